@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Stage 1: what is in the picture (`SceneAnalysis`) and how it was seen (`Calibration`)."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from .camera import CameraModel
+from .common import Artifact, ImageBox, ImagePoint, Metres2, Metres3, Placement, Salience, Shape
+
+ArchitectureKind = Literal["wall", "partition", "door", "window", "opening", "builtin"]
+ViewKind = Literal["perspective", "orthographic", "plan"]
+
+
+class Zone(Artifact):
+    """A part of the room with a use of its own."""
+
+    id: str
+    label: str
+
+
+class ArchitectureItem(Artifact):
+    """A wall, or something in a wall, as a segment on the floor in metres.
+
+    Attributes:
+        start, end: ends of the segment (centre line for partitions, inner face for walls).
+        height: top above the item's lower edge; sill: lower edge above the floor (windows).
+        wall: id of the wall that a door, window or opening lies in.
+        swing: for doors, "in", "out", "sliding" or "" when unknown.
+    """
+
+    id: str
+    kind: ArchitectureKind
+    start: Metres2
+    end: Metres2
+    height: float
+    sill: float = 0.0
+    thickness: float = 0.12
+    wall: str | None = None
+    box: ImageBox | None = None
+    swing: str = ""
+
+
+class DetectedObject(Artifact):
+    """One thing that the analysis saw: both where the picture shows it and where it is in metres.
+
+    Attributes:
+        box: the whole visible object in the picture.
+        centre: centre of its oriented bounding box (x, y, z) in metres, z half-way up the object.
+        size: width along its own x, depth along its own y, height; metres.
+        yaw: degrees counter-clockwise; 0 faces -Y (down in the picture).
+        confidence: 0..1, the model's own or the analyser's.
+        source: which request or pass found it.
+    """
+
+    id: str
+    category: str
+    label: str = ""
+    placement: Placement = "floor"
+    parent: str | None = None
+    salience: Salience = "major"
+    zone: str | None = None
+    shape: Shape = "box"
+    box: ImageBox | None
+    centre: Metres3
+    size: Metres3
+    yaw: float = 0.0
+    confidence: float = 1.0
+    source: str = "analysis"
+
+
+class Finding(Artifact):
+    """Something that was repaired, dropped or doubted, in one plain sentence."""
+
+    about: str
+    message: str
+    severity: Literal["note", "warning", "error"] = "note"
+
+
+class SceneAnalysis(Artifact):
+    """Everything that stage 1 knows of the picture.
+
+    Attributes:
+        view: how the room was seen.
+        room_size: width, depth, height of the floor's bounding rectangle and the walls, metres.
+        floor: floor outline in metres, counter-clockwise, origin at its bounding rectangle's centre.
+        floor_polygon: the same corners in the picture, in the same order, at floor level.
+        wall_top_polygon: inner upper edges of the same walls in the picture, same order, or None.
+    """
+
+    image_size: tuple[int, int]
+    view: ViewKind
+    room_type: str = "room"
+    room_size: Metres3
+    floor: list[Metres2]
+    floor_polygon: list[ImagePoint]
+    wall_top_polygon: list[ImagePoint] | None = None
+    zones: list[Zone] = []
+    architecture: list[ArchitectureItem] = []
+    objects: list[DetectedObject] = []
+    findings: list[Finding] = []
+
+
+class ObjectResidual(Artifact):
+    """How well an object's metres, projected through the fitted camera, cover its picture box."""
+
+    id: str
+    iou: float
+    shift: Metres2
+
+
+class Calibration(Artifact):
+    """The fitted camera and the room's outline in metres that belongs to it.
+
+    Attributes:
+        error_px: root mean square reprojection error of the corners, pixels.
+        scale_source: what fixed the scale ("model", "known length", "door", ...).
+        scale_spread: relative uncertainty of the scale, 0 when it is given.
+    """
+
+    camera: CameraModel
+    floor: list[Metres2]
+    height: float
+    error_px: float
+    scale_source: str
+    scale_spread: float = 0.0
+    residuals: list[ObjectResidual] = []
+    findings: list[Finding] = []

@@ -1,0 +1,206 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The typed layout lines of a room program, and what stages 3 and 4 write."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from .analysis import Finding
+from .common import Artifact, Metres2, Metres3, Placement, Salience, Shape
+
+
+class RoomLine(Artifact):
+    """`room(size=(w, d, h), floor=[(x, y), ...])`: bounding size and floor outline, counter-clockwise."""
+
+    size: Metres3
+    floor: list[Metres2]
+
+
+class WallLine(Artifact):
+    """`wall(id, start, end, height=, thickness=)`.
+
+    The segment is the wall's inner face for outer walls (the room lies to its left, that is, the floor polygon runs
+    counter-clockwise) with the thickness outside; for partitions (`partition=True`) it is the centre line.
+    """
+
+    id: str
+    start: Metres2
+    end: Metres2
+    height: float
+    thickness: float = 0.12
+    partition: bool = False
+
+
+class DoorLine(Artifact):
+    """`door(id, wall=, start, end, height=, open=)`: a leaf, hinge at `start`, `open` degrees into the room."""
+
+    id: str
+    wall: str
+    start: Metres2
+    end: Metres2
+    height: float = 2.05
+    open: float = 0.0
+
+
+class WindowLine(Artifact):
+    """`window(id, wall=, start, end, sill=, height=)`: glazing in a wall; height is measured from the sill."""
+
+    id: str
+    wall: str
+    start: Metres2
+    end: Metres2
+    sill: float = 0.9
+    height: float = 1.3
+
+
+class OpeningLine(Artifact):
+    """`opening(id, wall=, start, end, sill=, height=)`: a hole in a wall without leaf or glass."""
+
+    id: str
+    wall: str
+    start: Metres2
+    end: Metres2
+    sill: float = 0.0
+    height: float = 2.2
+
+
+class ProxyLine(Artifact):
+    """`proxy(id, category, centre=, size=, yaw=, ...)`: the oriented box that stands in for an object.
+
+    `centre` is the box's centre (x, y, z), `size` its width (own x), depth (own y) and height; yaw in degrees
+    counter-clockwise, 0 faces -Y. `parent` is the id of what it stands on or hangs from.
+    """
+
+    id: str
+    category: str
+    centre: Metres3
+    size: Metres3
+    yaw: float = 0.0
+    placement: Placement = "floor"
+    parent: str | None = None
+    salience: Salience = "major"
+    label: str = ""
+    shape: Shape = "box"
+
+
+class LightLine(Artifact):
+    """`light(id, kind, at, energy=, color=, size=, target=)`: linear colour, energy in Blender's watts."""
+
+    id: str
+    kind: Literal["sun", "area", "point", "spot"]
+    at: Metres3
+    energy: float
+    color: Metres3 = (1.0, 1.0, 1.0)
+    size: float = 0.1
+    target: Metres3 | None = None
+
+
+class CameraLine(Artifact):
+    """`camera(id, kind, matrix=, fov_y=, ortho_height=, image_size=, principal=)`, fields as `CameraModel`."""
+
+    id: str
+    kind: Literal["perspective", "orthographic"]
+    matrix: tuple[float, ...]
+    fov_y: float = 0.0
+    ortho_height: float = 0.0
+    image_size: tuple[int, int] = (1024, 1024)
+    principal: Metres2 = (500.0, 500.0)
+
+
+Line = RoomLine | WallLine | DoorLine | WindowLine | OpeningLine | ProxyLine | LightLine | CameraLine
+
+
+class Layout(Artifact):
+    """The layout lines of one room, in the order in which they are printed."""
+
+    room: RoomLine
+    walls: list[WallLine] = []
+    doors: list[DoorLine] = []
+    windows: list[WindowLine] = []
+    openings: list[OpeningLine] = []
+    proxies: list[ProxyLine] = []
+    lights: list[LightLine] = []
+    cameras: list[CameraLine] = []
+
+    def proxy(self, identifier: str) -> ProxyLine | None:
+        """The proxy with this id, or None."""
+        return next((p for p in self.proxies if p.id == identifier), None)
+
+
+class LayoutEdit(Artifact):
+    """One typed edit of the layout; only the fields that the kind uses are given.
+
+    Attributes:
+        op: move (centre), resize (size), turn (yaw), add (all), remove, recategorise (category), rename (new_id),
+            reparent (placement and parent).
+        reason: why, in a few words.
+        origin: who asked: "model", "solver", "artist".
+    """
+
+    op: Literal["move", "resize", "turn", "add", "remove", "recategorise", "rename", "reparent"]
+    id: str
+    centre: Metres3 | None = None
+    size: Metres3 | None = None
+    yaw: float | None = None
+    category: str | None = None
+    label: str | None = None
+    placement: Placement | None = None
+    parent: str | None = None
+    salience: Salience | None = None
+    new_id: str | None = None
+    reason: str = ""
+    origin: Literal["model", "solver", "artist"] = "model"
+
+
+class Score(Artifact):
+    """How good a layout is, each part 0..1, higher is better; `total` is the weighted mean of what was measured.
+
+    `model` is the model's own judgement, or None when it gave none.
+    """
+
+    total: float
+    coverage: float
+    overlap: float
+    bounds: float
+    relations: float
+    boxes: float
+    model: float | None = None
+
+
+class Iteration(Artifact):
+    """One round of the layout loop: the layout it started from, its score, and what was asked for after it."""
+
+    number: int
+    program: str
+    score: Score
+    edits: list[LayoutEdit] = []
+    refused: list[Finding] = []
+    remarks: str = ""
+
+
+class LedgerEntry(Artifact):
+    """What became of one detected object."""
+
+    id: str
+    category: str
+    state: Literal["placed", "deferred", "dropped"]
+    reason: str = ""
+
+
+class LayoutProgram(Artifact):
+    """What stages 3 and 4 write: the program's text after the prelude, and how it came about.
+
+    Attributes:
+        text: the layout program (room language, without the prelude).
+        stage: which stage wrote it.
+        best: number of the iteration that was kept.
+        ledger: from stage 4 on, one entry for each detected object.
+    """
+
+    text: str
+    stage: str
+    score: Score
+    best: int = 0
+    iterations: list[Iteration] = []
+    ledger: list[LedgerEntry] = []
+    findings: list[Finding] = []

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a stage may wish for. A stage yields a wish and is sent its result; it never does I/O itself.
+
+`Ask` is answered with a list of validated replies in the order of its requests; `Build` with a `SceneSummary` of what
+stands in the scene; `Render` with PNG bytes; `Tell` with None.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from pydantic import BaseModel
+
+from ..artifacts.camera import CameraModel
+from ..artifacts.layout import Layout
+
+
+@dataclass(frozen=True)
+class Picture:
+    """An encoded picture (PNG or JPEG bytes) with a short name for the prompt, such as "reference"."""
+
+    name: str
+    data: bytes
+
+
+@dataclass(frozen=True)
+class Request:
+    """One question to the model.
+
+    Attributes:
+        key: unique within the stage's run and stable between runs, such as "01_analysis" or "03_critique/2".
+        prompt: name of the template in `prompts/`, without `.md`.
+        values: what the template's `{{name}}` places are filled with.
+        images: the pictures, in the order the prompt speaks of them.
+        reply: pydantic type of the answer.
+        facts: typed data for a client that has no language model (the built-in one); never sent over a wire.
+    """
+
+    key: str
+    prompt: str
+    reply: type[BaseModel]
+    values: Mapping[str, str] = field(default_factory=dict)
+    images: tuple[Picture, ...] = ()
+    facts: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Ask:
+    """Requests that may run side by side."""
+
+    requests: tuple[Request, ...]
+
+
+@dataclass(frozen=True)
+class Build:
+    """Make the scene show this room program (text after the prelude)."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Render:
+    """A picture of what stands in the scene, seen through a camera, at most `long_side` pixels, PNG.
+
+    `labels` draws ids on the proxies.
+    """
+
+    camera: CameraModel
+    long_side: int = 1024
+    labels: bool = False
+
+
+@dataclass(frozen=True)
+class Tell:
+    """Progress for the artist: what is being done, step of steps (0 when not counted)."""
+
+    what: str
+    step: int = 0
+    steps: int = 0
+
+
+Wish = Ask | Build | Render | Tell
+StageRun = Generator[Wish, Any, list[BaseModel]]
+"""A stage's generator; its return value is the list of artifacts that it writes."""
+
+__all__ = ["Ask", "Build", "CameraModel", "Layout", "Picture", "Render", "Request", "StageRun", "Tell", "Wish"]
