@@ -34,3 +34,26 @@ class Shape:
     def vertex_count(self) -> int:
         """Number of vertices."""
         return len(self.vertices)
+
+
+def flat_shapes(where: str, shapes: Any) -> list[Shape]:
+    """The shapes of one shape or of a list of shapes and lists, in order. Raises ValueError on anything else."""
+    found: list[Shape] = []
+    open_lists: list[Any] = [shapes]
+    while open_lists:
+        item = open_lists.pop()
+        if isinstance(item, Shape):
+            found.append(item)
+        elif isinstance(item, (list, tuple)):
+            open_lists.extend(reversed(item))
+        else:
+            raise ValueError(f"{where}: expected a shape or a list of shapes, not {describe(item)}")
+        if len(found) + len(open_lists) > 100_000:
+            raise ValueError(f"{where}: too many shapes")
+    return found
+
+
+def describe(value: Any) -> str:
+    """What kind of value it is, in a plain word for messages."""
+    words = {type(None): "None", bool: "True or False", int: "a number", float: "a number", str: "text", dict: "a dict"}
+    return words.get(type(value), "a list" if isinstance(value, (list, tuple)) else "a function")

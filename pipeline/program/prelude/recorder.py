@@ -1,0 +1,218 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the layout lines, `furnish` and `build` do when a room program runs: check, and write a `Record`."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from .checks import choice, fail, flag, number, point, positive, sizes, text, whole
+from .record import Record
+from .shape import Shape, flat_shapes
+
+MOST_LINES = 2000
+MOST_CORNERS = 500
+PLACEMENTS = ("floor", "wall", "ceiling", "surface")
+SALIENCES = ("major", "minor")
+PROXY_SHAPES = ("box", "round", "l_shape")
+LIGHT_KINDS = ("sun", "area", "point", "spot")
+CAMERA_KINDS = ("perspective", "orthographic")
+
+
+class Recorder:
+    """Fills `record` as the lines of one room run. Every method raises ValueError with a plain sentence.
+
+    Ids are unique over the whole room. References (a door's wall, a proxy's parent, the proxy that is furnished) may
+    come in any order and are checked by `build`.
+    """
+
+    def __init__(self) -> None:
+        self.record = Record()
+        self._ids: set[str] = set()
+
+    def _start(self, where: str) -> None:
+        if self.record.built:
+            raise fail(where, "build() must be the last statement")
+
+    def _new(self, where: str, identifier: Any) -> str:
+        self._start(where)
+        name = text(where, "the id", identifier, 100, empty=False)
+        if name in self._ids:
+            raise fail(where, f"the id {name!r} is used twice; every line needs an id of its own")
+        if len(self._ids) >= MOST_LINES:
+            raise fail(where, f"a room has at most {MOST_LINES} layout lines")
+        self._ids.add(name)
+        return name
+
+    def room(self, size: Any, floor: Any) -> None:
+        """Bounding size (width, depth, height) and floor outline, counter-clockwise; once in a program."""
+        self._start("room")
+        if self.record.room is not None:
+            raise fail("room", "there is already a room line; write it once")
+        if not isinstance(floor, (list, tuple)) or not 3 <= len(floor) <= MOST_CORNERS:
+            raise fail("room", f"floor must be a list of 3 to {MOST_CORNERS} corners (x, y)")
+        corners = [point("room", "each corner of the floor", corner, 2) for corner in floor]
+        turns = zip(corners, corners[1:] + corners[:1], strict=True)
+        if sum(a[0] * b[1] - a[1] * b[0] for a, b in turns) <= 0:
+            raise fail("room", "the floor's corners must run counter-clockwise round an area")
+        self.record.room = {"size": sizes("room", "size", size), "floor": corners}
+
+    def wall(
+        self, id: Any, start: Any, end: Any, height: Any, thickness: Any = 0.12, partition: Any = False
+    ) -> None:
+        """A wall along its inner face, thickness outside; a partition along its centre line."""
+        line = self._segment("wall", id, start, end)
+        line["height"] = positive("wall", "height", height)
+        line["thickness"] = positive("wall", "thickness", thickness)
+        line["partition"] = flag("wall", "partition", partition)
+        self.record.walls.append(line)
+
+    def door(self, id: Any, wall: Any, start: Any, end: Any, height: Any = 2.05, open: Any = 0.0) -> None:
+        """A door leaf in a wall: hinge at `start`, `open` degrees into the room."""
+        line = self._segment("door", id, start, end, wall)
+        line["height"] = positive("door", "height", height)
+        line["open"] = number("door", "open", open, -180.0, 180.0)
+        self.record.doors.append(line)
+
+    def window(self, id: Any, wall: Any, start: Any, end: Any, sill: Any = 0.9, height: Any = 1.3) -> None:
+        """Glazing in a wall; height is measured from the sill."""
+        self.record.windows.append(self._hole("window", id, wall, start, end, sill, height))
+
+    def opening(self, id: Any, wall: Any, start: Any, end: Any, sill: Any = 0.0, height: Any = 2.2) -> None:
+        """A hole in a wall without leaf or glass."""
+        self.record.openings.append(self._hole("opening", id, wall, start, end, sill, height))
+
+    def _segment(self, where: str, identifier: Any, start: Any, end: Any, wall: Any = None) -> dict[str, Any]:
+        line: dict[str, Any] = {"id": self._new(where, identifier)}
+        if where != "wall":
+            line["wall"] = text(where, "wall", wall, 100, empty=False)
+        line["start"] = point(where, "start", start, 2)
+        line["end"] = point(where, "end", end, 2)
+        if math.dist(line["start"], line["end"]) < 1e-3:
+            raise fail(where, "start and end are the same point")
+        return line
+
+    def _hole(
+        self, where: str, identifier: Any, wall: Any, start: Any, end: Any, sill: Any, height: Any
+    ) -> dict[str, Any]:
+        line = self._segment(where, identifier, start, end, wall)
+        line["sill"] = number(where, "sill", sill, 0.0)
+        line["height"] = positive(where, "height", height)
+        return line
+
+    def proxy(
+        self,
+        id: Any,
+        category: Any,
+        centre: Any,
+        size: Any,
+        yaw: Any = 0.0,
+        placement: Any = "floor",
+        parent: Any = None,
+        salience: Any = "major",
+        label: Any = "",
+        shape: Any = "box",
+    ) -> None:
+        """The oriented box that stands in for an object; yaw in degrees counter-clockwise, 0 faces -Y."""
+        line = {
+            "id": self._new("proxy", id),
+            "category": text("proxy", "category", category, empty=False),
+            "centre": point("proxy", "centre", centre),
+            "size": sizes("proxy", "size", size),
+            "yaw": number("proxy", "yaw", yaw, -36000.0, 36000.0),
+            "placement": choice("proxy", "placement", placement, PLACEMENTS),
+            "parent": None if parent is None else text("proxy", "parent", parent, 100, empty=False),
+            "salience": choice("proxy", "salience", salience, SALIENCES),
+            "label": text("proxy", "label", label, 2000),
+            "shape": choice("proxy", "shape", shape, PROXY_SHAPES),
+        }
+        self.record.proxies.append(line)
+
+    def light(
+        self, id: Any, kind: Any, at: Any, energy: Any, color: Any = (1.0, 1.0, 1.0), size: Any = 0.1, target: Any = None
+    ) -> None:
+        """A lamp: linear colour, energy in Blender's watts."""
+        line = {
+            "id": self._new("light", id),
+            "kind": choice("light", "kind", kind, LIGHT_KINDS),
+            "at": point("light", "at", at),
+            "energy": number("light", "energy", energy, 0.0, 1e7),
+            "color": point("light", "color", color),
+            "size": number("light", "size", size, 0.0),
+            "target": None if target is None else point("light", "target", target),
+        }
+        self.record.lights.append(line)
+
+    def camera(
+        self,
+        id: Any,
+        kind: Any,
+        matrix: Any,
+        fov_y: Any = 0.0,
+        ortho_height: Any = 0.0,
+        image_size: Any = (1024, 1024),
+        principal: Any = (500.0, 500.0),
+    ) -> None:
+        """A camera: camera-to-world matrix row by row, vertical field of view in radians or height in metres."""
+        if not isinstance(image_size, (list, tuple)) or len(image_size) != 2:
+            raise fail("camera", "image_size must be (width, height) in pixels")
+        line = {
+            "id": self._new("camera", id),
+            "kind": choice("camera", "kind", kind, CAMERA_KINDS),
+            "matrix": point("camera", "matrix", matrix, 16),
+            "fov_y": number("camera", "fov_y", fov_y, 0.0, math.pi - 1e-3),
+            "ortho_height": number("camera", "ortho_height", ortho_height, 0.0),
+            "image_size": tuple(whole("camera", "image_size", side, 1, 100_000) for side in image_size),
+            "principal": point("camera", "principal", principal, 2),
+        }
+        if kind == "perspective" and not line["fov_y"]:
+            raise fail("camera", "a perspective camera needs fov_y, its vertical field of view in radians")
+        if kind == "orthographic" and not line["ortho_height"]:
+            raise fail("camera", "an orthographic camera needs ortho_height, the metres that the picture's height spans")
+        self.record.cameras.append(line)
+
+    def furnish(self, id: Any, shapes: Any) -> None:
+        """Put shapes in the place of proxy `id`; they are in its local frame, origin at the centre of its base."""
+        self._start("furnish")
+        name = text("furnish", "the id", id, 100, empty=False)
+        if name in self.record.furnished:
+            raise fail("furnish", f"{name!r} is furnished twice")
+        found: list[Shape] = flat_shapes("furnish", shapes)
+        if not found:
+            raise fail("furnish", f"there are no shapes for {name!r}")
+        self.record.furnished[name] = found
+
+    def build(self) -> None:
+        """The last statement: checks what refers to what."""
+        self._start("build")
+        record = self.record
+        if record.room is None:
+            raise fail("build", "the room line is missing")
+        walls = {line["id"] for line in record.walls}
+        for line in record.doors + record.windows + record.openings:
+            if line["wall"] not in walls:
+                raise fail("build", f"{line['id']!r} lies in {line['wall']!r}, which is not a wall of this room")
+        parents = {line["id"]: line["parent"] for line in record.proxies}
+        fixed = walls | {line["id"] for line in record.doors + record.windows + record.openings}
+        check_parents(parents, fixed)
+        for name in record.furnished:
+            if name not in parents:
+                raise fail("build", f"furnish names {name!r}, which is not a proxy of this room")
+        record.built = True
+
+
+def check_parents(parents: dict[str, Any], fixed: set[str]) -> None:
+    """Refuse unknown parents and parents in a circle. `fixed` are ids of walls and what is in them."""
+    for name, parent in parents.items():
+        if parent is not None and parent not in parents and parent not in fixed:
+            raise fail("build", f"the parent {parent!r} of {name!r} does not exist")
+    sound: set[str] = set()
+    for name in parents:
+        chain: set[str] = set()
+        at: str | None = name
+        while at is not None and at in parents and at not in sound:
+            if at in chain:
+                raise fail("build", f"the parents of {at!r} run in a circle")
+            chain.add(at)
+            at = parents[at]
+        sound |= chain

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which names a room program may use of the prelude. Add a constructor here and nowhere else.
+
+A room must not bind any of the names in `RESERVED` at its top level: in plain Python that would change the meaning of
+the prelude, which shares the module. Names that begin with an underscore are the prelude's own (see `assemble.py`).
+"""
+
+from __future__ import annotations
+
+import builtins
+import math
+from collections.abc import Callable
+from typing import Any
+
+from . import numbers
+
+CONSTANTS: dict[str, float] = {"pi": math.pi, "tau": math.tau}
+"""Names with a fixed value."""
+
+MATH: tuple[str, ...] = (
+    "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sqrt", "exp", "log", "floor", "ceil", "radians", "degrees", "hypot"
+)  # fmt: skip
+"""Functions of Python's math module that are in the language under their own names."""
+
+CONSTRUCTORS: dict[str, Callable[..., Any]] = {
+    "lerp": numbers.lerp,
+    "clamp": numbers.clamp,
+    "smoothstep": numbers.smoothstep,
+    "rand": numbers.rand,
+    "noise": numbers.noise,
+    "append": numbers.append,
+    "keys": numbers.keys,
+    "values": numbers.values,
+    "items": numbers.items,
+}
+"""Pure functions of the prelude by name: numbers to numbers, numbers to shapes, shapes to shapes."""
+
+LINE_NAMES: tuple[str, ...] = (
+    "room", "wall", "door", "window", "opening", "proxy", "light", "camera", "furnish", "build"
+)  # fmt: skip
+"""Methods of `Recorder` that are in the language under their own names."""
+
+RESERVED: frozenset[str] = frozenset({*CONSTANTS, *MATH, *CONSTRUCTORS, *LINE_NAMES, *dir(builtins)})
