@@ -45,6 +45,10 @@ class ReplyError(ModelError):
         self.problems = problems
 
 
+class CutReplyError(ReplyError):
+    """The answer ends in the middle: the model hit its length limit, or the text was cut on its way."""
+
+
 class ProgramError(RoomError):
     """A room program is outside the room language or over a limit.
 

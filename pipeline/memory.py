@@ -12,7 +12,7 @@ import hashlib
 import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from datetime import datetime, timezone
+from datetime import UTC, datetime
 from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
@@ -20,12 +20,13 @@ from pydantic import BaseModel, ValidationError
 from .artifacts.analysis import Calibration, SceneAnalysis
 from .artifacts.common import Artifact
 from .artifacts.graph import MinorObjects, SceneGraph
+from .artifacts.hand import HandEdits
 from .artifacts.layout import LayoutProgram
 from .errors import MemoryFormatError
 
 FORMAT = "code-as-room/memory/1"
 KINDS: dict[str, type[Artifact]] = {
-    kind.__name__: kind for kind in (SceneAnalysis, Calibration, SceneGraph, MinorObjects, LayoutProgram)
+    kind.__name__: kind for kind in (SceneAnalysis, Calibration, SceneGraph, MinorObjects, LayoutProgram, HandEdits)
 }
 _CHUNK = 160
 _TEXT = "~text"
@@ -33,9 +34,11 @@ A = TypeVar("A", bound=BaseModel)
 
 
 class EntryMeta(Artifact):
-    """How an entry came about. `inputs` maps what was read to its hash; `cost` is in US dollars."""
+    """How an entry came about. `client` is what was asked, `model` what answered; `inputs` maps what was read to its
+    hash; `cost` is in US dollars."""
 
     time: str
+    client: str = ""
     model: str = ""
     prompt_tokens: int = 0
     completion_tokens: int = 0
@@ -87,10 +90,10 @@ class Memory:
         entry = self.latest_entry(kind.__name__, stages)
         return None if entry is None else kind.model_validate(entry.output)
 
-    def answer(self, prompt_hash: str) -> Entry | None:
-        """The kept answer to a prompt with this hash, so that nothing is paid for twice."""
+    def answer(self, prompt_hash: str, client: str) -> Entry | None:
+        """This client's kept answer to a prompt with this hash, so that nothing is paid for twice."""
         for entry in reversed(self.entries):
-            if entry.type == "Answer" and entry.meta.prompt_hash == prompt_hash:
+            if entry.type == "Answer" and entry.meta.prompt_hash == prompt_hash and entry.meta.client == client:
                 return entry
         return None
 
@@ -121,7 +124,7 @@ def content_hash(value: Any) -> str:
 
 def now() -> str:
     """The present time in UTC, ISO 8601, whole seconds."""
-    return datetime.now(timezone.utc).replace(microsecond=0).isoformat()
+    return datetime.now(UTC).replace(microsecond=0).isoformat()
 
 
 def dump_memory(memory: Memory) -> str:
@@ -187,9 +190,7 @@ def _refuse_constant(name: str) -> float:
 def _fold(value: Any) -> Any:
     """Long or multi-line strings as a list of short pieces, so that no line of the text is long."""
     if isinstance(value, str) and (len(value) > _CHUNK or "\n" in value):
-        pieces = [
-            line[i : i + _CHUNK] for line in value.splitlines(keepends=True) for i in range(0, len(line), _CHUNK)
-        ]
+        pieces = [line[i : i + _CHUNK] for line in value.splitlines(keepends=True) for i in range(0, len(line), _CHUNK)]
         return {_TEXT: pieces}
     if isinstance(value, Mapping):
         return {key: _fold(item) for key, item in value.items()}

@@ -7,8 +7,8 @@ import re
 
 from ..artifacts.analysis import ArchitectureItem, DetectedObject, Finding, SceneAnalysis, Zone
 from ..artifacts.common import ImageBox, ImagePoint
-from ..errors import ReplyError
 from ..artifacts.replies import AnalysisReply, ArchitectureReply, BoxReply, ObjectReply, PointReply
+from ..errors import ReplyError
 
 MAX_OBJECTS = 300
 MAX_METRES = 100.0
@@ -74,7 +74,9 @@ def clean_object(reply: ObjectReply, taken: set[str], findings: list[Finding], s
     base = max(0.0, min(10.0, reply.base_m))
     yaw = facing_yaw(reply.facing, reply.yaw_deg)
     if abs((yaw - reply.yaw_deg % 360 + 180) % 360 - 180) > 1:
-        findings.append(Finding(about=name, message=f"Yaw {reply.yaw_deg:g} contradicts facing {reply.facing}; the word won."))
+        findings.append(
+            Finding(about=name, message=f"Yaw {reply.yaw_deg:g} contradicts facing {reply.facing}; the word won.")
+        )
     return DetectedObject(
         id=name,
         category=reply.category.strip()[:60] or "object",
@@ -192,11 +194,16 @@ def clean_analysis(reply: AnalysisReply, image_size: tuple[int, int]) -> SceneAn
         )
     top = clean_polygon(reply.wall_top_polygon) if reply.wall_top_polygon else None
     if top is not None and len(top) != len(floor):
-        findings.append(Finding(about="wall_top_polygon", message="It has another number of corners than the floor; unused."))
+        findings.append(
+            Finding(about="wall_top_polygon", message="It has another number of corners than the floor; unused.")
+        )
         top = None
     if len(reply.objects) > MAX_OBJECTS:
         findings.append(
-            Finding(about="objects", message=f"{len(reply.objects)} objects were answered; the first {MAX_OBJECTS} are used.")
+            Finding(
+                about="objects",
+                message=f"{len(reply.objects)} objects were answered; the first {MAX_OBJECTS} are used.",
+            )
         )
     taken: set[str] = set()
     objects = [clean_object(o, taken, findings, "analysis") for o in reply.objects[:MAX_OBJECTS]]
@@ -227,5 +234,7 @@ def clean_analysis(reply: AnalysisReply, image_size: tuple[int, int]) -> SceneAn
 def _metres(value: float, name: str, findings: list[Finding]) -> float:
     if 0.5 <= value <= MAX_METRES:
         return value
-    findings.append(Finding(about="room", message=f"The {name} {value:g} m is not possible; 4 m is assumed.", severity="warning"))
+    findings.append(
+        Finding(about="room", message=f"The {name} {value:g} m is not possible; 4 m is assumed.", severity="warning")
+    )
     return 4.0

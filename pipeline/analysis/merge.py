@@ -57,7 +57,9 @@ def _missed(
 ) -> DetectedObject | None:
     index = missed.picture - 1
     if not 0 <= index < len(crops):
-        findings.append(Finding(about=missed.id, message=f"It names picture {missed.picture}, which was not sent; dropped."))
+        findings.append(
+            Finding(about=missed.id, message=f"It names picture {missed.picture}, which was not sent; dropped.")
+        )
         return None
     placed = missed.model_copy(update={"box": to_whole_picture(missed.box, crops[index])})
     return clean_object(placed, taken, findings, "second look")
@@ -101,5 +103,7 @@ def _apply(item: DetectedObject, fix: CorrectionReply, findings: list[Finding]) 
     if fix.parent is not None:
         update["parent"] = fix.parent or None
     if update:
-        findings.append(Finding(about=item.id, message=f"Corrected by the second look: {', '.join(update)}. {fix.wrong[:100]}"))
+        findings.append(
+            Finding(about=item.id, message=f"Corrected by the second look: {', '.join(update)}. {fix.wrong[:100]}")
+        )
     return item.model_copy(update=update)

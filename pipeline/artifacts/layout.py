@@ -153,12 +153,14 @@ class LayoutEdit(Artifact):
 
 
 class Score(Artifact):
-    """How good a layout is, each part 0..1, higher is better; `total` is the weighted mean of what was measured.
+    """How good a layout is, each part 0..1, higher is better.
 
-    `model` is the model's own judgement, or None when it gave none.
+    `measured` is the weighted mean of what was measured, `model` the model's own judgement (None when it gave none),
+    `total` both weighed together.
     """
 
     total: float
+    measured: float
     coverage: float
     overlap: float
     bounds: float

@@ -176,7 +176,7 @@ class EditReply(Reply):
 class CritiqueReply(Reply):
     """Answer to prompt 03_critique: how well the render matches the picture, 0..100, and what to change."""
 
-    score: float
+    score: float | None = None
     remarks: str = ""
     edits: list[EditReply] = Field(default_factory=list)
 

@@ -57,7 +57,7 @@ class LiftedOnWall(NamedTuple):
         along: metres from the wall's start to the object's middle.
         width: metres along the wall; z_min, z_max: metres above the floor.
         centre, size, yaw: the same as an oriented box that faces the room, its back on the wall.
-        z_known: 0 when the picture says nothing of the height and the given one was taken, 1 when only the picture does.
+        z_known: 0 when the given height was taken as it was, 1 when the picture alone decided it.
         residual: as in `Lifted`.
     """
 
@@ -97,11 +97,7 @@ def image_box_of(
         GeometryError: all of it is behind the camera. What is partly behind is cut at 1 cm in front of the camera.
     """
     lens = Projector.of(camera)
-    low_x, low_y, high_x, high_y = _extent(lens, centre, size, yaw, shape)
-    width, height = lens.size
-    return ImageBox(
-        x_min=low_x * 1000 / width, y_min=low_y * 1000 / height, x_max=high_x * 1000 / width, y_max=high_y * 1000 / height
-    )
+    return _as_box(lens, _extent(lens, centre, size, yaw, shape))
 
 
 def _extent(lens: Projector, centre: Sequence[float], size: Sequence[float], yaw: float, shape: Shape) -> Floats:

@@ -108,7 +108,9 @@ def geometric_edges(items: Sequence[Placed], walls: Sequence[WallLine]) -> list[
         if len(touching) >= 2:
             edges += [_edge(item.id, "in_corner", wall) for wall in touching[:2]]
     for item in floor:
-        others = sorted((o for o in floor if o.id != item.id), key=lambda o, c=item.centre: math.dist(o.centre[:2], c[:2]))
+        others = sorted(
+            (o for o in floor if o.id != item.id), key=lambda o, c=item.centre: math.dist(o.centre[:2], c[:2])
+        )
         for other in others[:NEIGHBOURS]:
             edges += _direction(item, other)
             if item.id < other.id and footprint_gap(item, other) <= NEAR_GAP:
@@ -148,13 +150,19 @@ def valid_edges(
         seen.add(key)
         if edge.source not in nodes or edge.target not in nodes:
             missing = edge.source if edge.source not in nodes else edge.target
-            findings.append(Finding(about=missing, message=f"A relation names {missing!r}, which does not exist; dropped."))
+            findings.append(
+                Finding(about=missing, message=f"A relation names {missing!r}, which does not exist; dropped.")
+            )
         elif edge.source == edge.target:
             findings.append(Finding(about=edge.source, message="A relation of a thing with itself was dropped."))
         elif edge.relation not in INVERSE:
-            findings.append(Finding(about=edge.source, message=f"The relation {edge.relation!r} is not known; dropped."))
+            findings.append(
+                Finding(about=edge.source, message=f"The relation {edge.relation!r} is not known; dropped.")
+            )
         elif edge.relation == "on" and (edge.source, edge.target) in opposite:
-            findings.append(Finding(about=edge.source, message=f"It cannot be on {edge.target}, which is on it; dropped."))
+            findings.append(
+                Finding(about=edge.source, message=f"It cannot be on {edge.target}, which is on it; dropped.")
+            )
         else:
             kept.append(edge)
     return kept, findings

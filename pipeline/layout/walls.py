@@ -100,7 +100,9 @@ def shell(
         if wall is None or span is None:
             level = "note" if item.kind == "opening" else "warning"
             findings.append(
-                Finding(about=item.id, message=f"No wall was found for this {item.kind}; it is left out.", severity=level)
+                Finding(
+                    about=item.id, message=f"No wall was found for this {item.kind}; it is left out.", severity=level
+                )
             )
             continue
         start, end = span
@@ -112,7 +114,9 @@ def shell(
             top = min(item.height, height - 0.05 - sill)
             windows.append(WindowLine(id=item.id, wall=wall.id, start=start, end=end, sill=sill, height=top))
         else:
-            openings.append(OpeningLine(id=item.id, wall=wall.id, start=start, end=end, height=min(item.height, height)))
+            openings.append(
+                OpeningLine(id=item.id, wall=wall.id, start=start, end=end, height=min(item.height, height))
+            )
     return room, walls, doors, windows, openings, findings
 
 

@@ -1,1 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+"""The stages, in their order."""
+
+from __future__ import annotations
+
+from .base import Stage
+
+
+def all_stages() -> tuple[Stage, ...]:
+    """Every stage that this version has, in the order in which they run."""
+    from . import s01_analysis, s02_graph, s03_layout, s04_auxiliary
+
+    return (s01_analysis.STAGE, s02_graph.STAGE, s03_layout.STAGE, s04_auxiliary.STAGE)

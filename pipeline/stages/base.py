@@ -43,7 +43,9 @@ class View:
         """The artifact of this type; RoomError names the missing step when an earlier stage has not run."""
         found = self.artifacts.get(kind)
         if not isinstance(found, kind):
-            raise RoomError(f"This stage needs {kind.__name__}, which is not there yet.", "Run the stages before it first.")
+            raise RoomError(
+                f"This stage needs {kind.__name__}, which is not there yet.", "Run the stages before it first."
+            )
         return found
 
     def number(self, name: str) -> float | None:

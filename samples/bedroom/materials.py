@@ -70,10 +70,10 @@ def plain(name: str, colour: str, roughness: float = 0.5, metallic: float = 0.0,
 def wood(name: str, dark: str, light: str, along: str = "x", roughness: float = 0.42) -> bpy.types.Material:
     """Wood grain along one axis of the object."""
     n = Nodes(name)
-    long, cross = 1.3, 15.0
+    long, cross = 1.5, 24.0
     scale = {"x": (long, cross, cross), "y": (cross, long, cross), "z": (cross, cross, long)}[along]
     where = n.place(scale)
-    grain = n.add("TexNoise", {"Vector": where, "Scale": 1.0, "Detail": 6.0, "Roughness": 0.62, "Distortion": 0.9})
+    grain = n.add("TexNoise", {"Vector": where, "Scale": 1.0, "Detail": 4.0, "Roughness": 0.62, "Distortion": 0.9})
     fine = n.add("TexNoise", {"Vector": where, "Scale": 7.0, "Detail": 3.0})
     mixed = n.add("Mix", {"0": 0.3, "2": grain.outputs[0], "3": fine.outputs[0]}).outputs[0]
     colour = n.ramp(mixed, [(0.32, rgb(dark)), (0.66, rgb(light))])
@@ -86,10 +86,10 @@ def planks(name: str) -> bpy.types.Material:
     n = Nodes(name)
     uv = n.add("TexCoord").outputs["UV"]
     where = n.add("Mapping", {"Vector": uv, "Scale": (1.1, 13.0, 1.0)}).outputs[0]
-    grain = n.add("TexNoise", {"Vector": where, "Scale": 1.0, "Detail": 7.0, "Roughness": 0.6, "Distortion": 1.2})
+    grain = n.add("TexNoise", {"Vector": where, "Scale": 1.0, "Detail": 4.0, "Roughness": 0.6, "Distortion": 1.2})
     fine = n.add("TexNoise", {"Vector": where, "Scale": 9.0, "Detail": 3.0})
     mixed = n.add("Mix", {"0": 0.28, "2": grain.outputs[0], "3": fine.outputs[0]}).outputs[0]
-    colour = n.ramp(mixed, [(0.30, rgb("#866040")), (0.52, rgb("#a87f58")), (0.72, rgb("#bd966c"))])
+    colour = n.ramp(mixed, [(0.30, rgb("#7c6048")), (0.52, rgb("#9c7d5e")), (0.72, rgb("#b09272"))])
     tone = n.add("Attribute", attribute_name="tone").outputs["Fac"]
     toned = n.add("HueSaturation", {"Color": colour, "Saturation": 0.92,
                                     "Value": n.add("MapRange", {"Value": tone, "To Min": 0.80, "To Max": 1.12}).outputs[0]})
@@ -97,24 +97,24 @@ def planks(name: str) -> bpy.types.Material:
                                               "Normal": n.bump(mixed, 0.002, 0.25)}))
 
 
-def fabric(name: str, dark: str, light: str, weave: float = 260.0, depth: float = 0.0015, sheen: float = 0.25,
-           mottling: float = 7.0) -> bpy.types.Material:
-    """Cloth: a mottled colour and a woven bump."""
+def fabric(name: str, dark: str, light: str, sheen: float = 0.25, mottling: float = 7.0,
+           depth: float = 0.0) -> bpy.types.Material:
+    """Cloth: a mottled colour, and with `depth` (metres) a slubby bump. The weave itself is finer than a pixel."""
     n = Nodes(name)
-    where = n.place((1, 1, 1))
-    patches = n.add("TexNoise", {"Vector": where, "Scale": mottling, "Detail": 8.0, "Roughness": 0.75})
-    colour = n.ramp(patches.outputs[0], [(0.30, rgb(dark)), (0.70, rgb(light))])
-    thread = n.add("TexVoronoi", {"Vector": where, "Scale": weave})
-    return n.surface(n.add("BsdfPrincipled", {
-        "Base Color": colour, "Roughness": 0.92, "Sheen Weight": sheen, "Sheen Roughness": 0.4,
-        "Normal": n.bump(thread.outputs[0], depth, 0.5)}))
+    patches = n.add("TexNoise", {"Vector": n.place((1, 1, 1)), "Scale": mottling, "Detail": 5.0, "Roughness": 0.75})
+    inputs = {"Base Color": n.ramp(patches.outputs[0], [(0.30, rgb(dark)), (0.70, rgb(light))]), "Roughness": 0.92,
+              "Sheen Weight": sheen, "Sheen Roughness": 0.4}
+    if depth:
+        slub = n.add("TexNoise", {"Vector": n.place((1, 1, 1)), "Scale": 90.0, "Detail": 2.0})
+        inputs["Normal"] = n.bump(slub.outputs[0], depth, 0.6)
+    return n.surface(n.add("BsdfPrincipled", inputs))
 
 
 def knit(name: str, dark: str, light: str) -> bpy.types.Material:
     """A chunky ribbed knit; UV x runs across the ribs."""
     n = Nodes(name)
     where = n.place((1, 1, 1), "UV")
-    ribs = n.add("TexWave", {"Vector": where, "Scale": 14.0, "Distortion": 1.2, "Detail": 2.0, "Detail Scale": 3.0},
+    ribs = n.add("TexWave", {"Vector": where, "Scale": 20.0, "Distortion": 1.6, "Detail": 2.0, "Detail Scale": 3.0},
                  bands_direction="X")
     colour = n.ramp(ribs.outputs["Fac"], [(0.1, rgb(dark)), (0.8, rgb(light))])
     return n.surface(n.add("BsdfPrincipled", {"Base Color": colour, "Roughness": 0.95, "Sheen Weight": 0.3,
@@ -159,8 +159,8 @@ def rug(name: str) -> bpy.types.Material:
     inside = math("GREATER_THAN", edge, 0.075)
     border = math("MULTIPLY", math("LESS_THAN", edge, 0.058), math("GREATER_THAN", edge, 0.040))
     mask = math("MAXIMUM", math("MULTIPLY", lattice, inside), border)
-    pile = n.add("TexNoise", {"Vector": n.place((1, 1, 1)), "Scale": 110.0, "Detail": 6.0, "Roughness": 0.8})
-    patches = n.add("TexNoise", {"Vector": n.place((1, 1, 1)), "Scale": 5.0, "Detail": 6.0})
+    pile = n.add("TexNoise", {"Vector": n.place((1, 1, 1)), "Scale": 110.0, "Detail": 3.0, "Roughness": 0.8})
+    patches = n.add("TexNoise", {"Vector": n.place((1, 1, 1)), "Scale": 5.0, "Detail": 4.0})
     cream = n.ramp(math("ADD", math("MULTIPLY", pile.outputs[0], 0.7), math("MULTIPLY", patches.outputs[0], 0.3)),
                    [(0.35, rgb("#b7ab98")), (0.62, rgb("#e2dacb"))])
     ink = n.ramp(pile.outputs[0], [(0.3, rgb("#57514b")), (0.7, rgb("#7d756c"))])
@@ -208,27 +208,27 @@ def glass(name: str) -> bpy.types.Material:
 
 MAKERS: dict[str, Callable[[str], bpy.types.Material]] = {
     "floor": planks,
-    "oak_x": lambda m: wood(m, "#8d6a47", "#c19a6b", "x"),
-    "oak_y": lambda m: wood(m, "#8d6a47", "#c19a6b", "y"),
-    "oak_z": lambda m: wood(m, "#8d6a47", "#c19a6b", "z"),
+    "oak_x": lambda m: wood(m, "#8c7153", "#b99d78", "x"),
+    "oak_y": lambda m: wood(m, "#8c7153", "#b99d78", "y"),
+    "oak_z": lambda m: wood(m, "#8c7153", "#b99d78", "z"),
     "walnut_x": lambda m: wood(m, "#4a3222", "#7a573b", "x"),
     "walnut_z": lambda m: wood(m, "#4a3222", "#7a573b", "z"),
     "lacquer": lambda m: plain(m, "#cfc8ba", 0.45),
     "lacquer_dark": lambda m: plain(m, "#a39b8c", 0.5),
-    "headboard": lambda m: fabric(m, "#a89880", "#c2b297"),
-    "cotton": lambda m: fabric(m, "#dcd8d0", "#ebe8e2", depth=0.0008, sheen=0.1),
-    "pillowcase": lambda m: fabric(m, "#d8d2c6", "#e8e3d9", depth=0.0008, sheen=0.1),
-    "duvet_fold": lambda m: fabric(m, "#b4b1a2", "#c3c0b2", depth=0.0008, sheen=0.1),
-    "terracotta": lambda m: knit(m, "#8a4a31", "#b96d4b"),
-    "velvet": lambda m: fabric(m, "#33493c", "#4b6552", 500.0, 0.0004, 0.6),
-    "bench": lambda m: fabric(m, "#8f8472", "#aa9e89", 220.0, 0.002),
-    "seat": lambda m: fabric(m, "#c6bcab", "#d8cfbf"),
+    "headboard": lambda m: fabric(m, "#a2937d", "#b9aa93", depth=0.002),
+    "cotton": lambda m: fabric(m, "#dcd8d0", "#e9e6e0", 0.1),
+    "pillowcase": lambda m: fabric(m, "#d8d2c6", "#e6e1d7", 0.1),
+    "duvet_fold": lambda m: fabric(m, "#b3b2a6", "#c2c1b6", 0.1),
+    "terracotta": lambda m: knit(m, "#80503c", "#9d6850"),
+    "velvet": lambda m: fabric(m, "#3a4a41", "#526356", 0.5),
+    "bench": lambda m: fabric(m, "#8c8170", "#a69b88", depth=0.003),
+    "seat": lambda m: fabric(m, "#c3baa9", "#d5cdbe", depth=0.002),
     "ceramic": lambda m: plain(m, "#d5cfc4", 0.3),
     "ceramic_blue": lambda m: plain(m, "#5d717a", 0.25),
     "clay": lambda m: plain(m, "#b06a4a", 0.85),
     "soil": lambda m: plain(m, "#2c211a", 1.0),
     "bark": lambda m: plain(m, "#5a4634", 0.9),
-    "leaf": lambda m: leaf(m, "#2c5027", "#4f7c3c"),
+    "leaf": lambda m: leaf(m, "#35532f", "#5b7d48"),
     "eucalyptus": lambda m: leaf(m, "#5f7a68", "#8ba391"),
     "brass": lambda m: plain(m, "#b08d57", 0.3, 1.0),
     "black_metal": lambda m: plain(m, "#232323", 0.45, 0.6),
@@ -237,18 +237,18 @@ MAKERS: dict[str, Callable[[str], bpy.types.Material]] = {
     "screen": lambda m: glow(m, "#3f5f7a", 0.55),
     "shade": lambda m: sheer(m, "#efe3cb", 0.45),
     "bulb": lambda m: glow(m, "#ffd9a0", 9.0),
-    "curtain": lambda m: sheer(m, "#d9cfbd", 0.35),
+    "curtain": lambda m: sheer(m, "#ece5d8", 0.45),
     "rug": rug,
     "rug_side": lambda m: plain(m, "#b7ab98", 1.0),
     "print": print_art,
     "paper": lambda m: plain(m, "#efece4", 0.7),
-    "mirror": lambda m: plain(m, "#e6e9ea", 0.03, 1.0),
+    "mirror": lambda m: plain(m, "#e3eaee", 0.04, 0.62),
     "glass": glass,
     "wall": lambda m: plain(m, "#e4dfd5", 0.85),
     "wall_accent": lambda m: plain(m, "#9aa491", 0.85),
     "trim": lambda m: plain(m, "#eceae5", 0.5),
     "door": lambda m: plain(m, "#e2ded6", 0.45),
-    "cut": lambda m: glow(m, "#c9c7c3", 1.0),
+    "cut": lambda m: glow(m, "#dcdad6", 1.5),
 }
 
 

@@ -99,9 +99,9 @@ def add_light(roots: dict[str, bpy.types.Object]) -> None:
     x = (WINDOW.start[0] + WINDOW.end[0]) / 2
     z = WINDOW.sill + WINDOW.height / 2
     area_light("daylight", (x, d / 2 + 0.25, z + 0.1), (-72, 0, 0), (1.9, 1.7), 85.0, "#f2f5ff")
-    area_light("fill", (0, 0, h - 0.02), (0, 0, 0), (w - 0.5, d - 0.5), 66.0, "#fffaf2")
+    area_light("fill", (0, 0, h - 0.02), (0, 0, 0), (w - 0.5, d - 0.5), 70.0, "#fffaf2")
     sun = bpy.data.lights.new("sun", "SUN")
-    sun.energy, sun.angle, sun.color = 3.6, math.radians(3.0), rgb("#ffe9cc")[:3]
+    sun.energy, sun.angle, sun.color = 7.5, math.radians(2.5), rgb("#ffe9cc")[:3]
     obj = bpy.data.objects.new("sun", sun)
     obj.rotation_euler = (math.radians(-52), 0, math.radians(24))
     bpy.context.scene.collection.objects.link(obj)
@@ -147,9 +147,9 @@ def set_render(samples: int, percent: int) -> None:
     scene.cycles.device = "CPU"
     scene.cycles.samples = samples
     scene.cycles.use_adaptive_sampling = True
-    scene.cycles.adaptive_threshold = 0.02
+    scene.cycles.adaptive_threshold = 0.03
     scene.cycles.use_denoising = True
-    scene.cycles.max_bounces, scene.cycles.diffuse_bounces = 8, 5
+    scene.cycles.max_bounces, scene.cycles.diffuse_bounces = 8, 4
     scene.cycles.sample_clamp_indirect = 4.0
     scene.cycles.caustics_reflective = scene.cycles.caustics_refractive = False
     scene.cycles.seed = 1
@@ -160,7 +160,7 @@ def set_render(samples: int, percent: int) -> None:
     scene.render.image_settings.color_mode = "RGBA"
     scene.view_settings.view_transform = "AgX"
     scene.view_settings.look = "AgX - Medium High Contrast"
-    scene.view_settings.exposure = 0.0
+    scene.view_settings.exposure = 0.2
 
 
 def local_bounds(root: bpy.types.Object) -> tuple[Array, Array]:

@@ -44,14 +44,26 @@ def duvet_surface() -> tuple[Array, int, int]:
     return verts, nu, nv
 
 
+def creased(verts: Array) -> Array:
+    """The duvet's surface with soft creases, mostly along its length, and quilting swells between them."""
+    bent = verts + 0.10 * np.column_stack([noise(verts, 3.0, 21), noise(verts, 3.0, 22), np.zeros(len(verts))])
+    stretched = bent * np.array([1.0, 0.45, 1.0])
+    ridge = (1 - np.abs(noise(stretched, 5.5, 31))) ** 4 - 0.35
+    fine = (1 - np.abs(noise(bent * np.array([0.6, 1.0, 1.0]), 9.0, 32))) ** 5 - 0.25
+    out = verts.copy()
+    out[:, 2] += 0.034 * ridge + 0.013 * fine + 0.014 * noise(verts, 2.2, 33)
+    return out
+
+
 def duvet() -> list[Part]:
     """Duvet with its top edge turned down."""
     verts, nu, nv = duvet_surface()
     flat = sheet(1, 1, nu, nv, "cotton")
-    body = thicken(Part(verts.copy(), flat.faces, "cotton", uv=flat.uv, name="duvet"), 0.035)
+    body = thicken(Part(creased(verts), flat.faces, "cotton", uv=flat.uv, name="duvet"), 0.035)
     keep = int(nv * 0.80)
-    fold = verts.reshape(nu, nv, 3)[:, keep:].copy()
+    fold = creased(verts).reshape(nu, nv, 3)[:, keep:].copy()
     fold[..., 2] += 0.040
+    fold[..., 1] += 0.018 * noise(fold.reshape(-1, 3) * [1, 0, 0], 3.0, 41).reshape(nu, -1)
     side = np.abs(fold[..., 0]).clip(0.78, None) - 0.78
     fold[..., 0] += np.sign(fold[..., 0]) * (side > 0) * 0.012
     v = np.linspace(0, 1, nv - keep)
@@ -66,10 +78,13 @@ def throw() -> list[Part]:
     """A knitted throw across the foot of the bed, simulated on the duvet. In the bed's local frame."""
     verts, nu, nv = duvet_surface()
     inner = sheet(1, 1, nu, nv, "cotton")
-    under = thicken(Part(verts.copy(), inner.faces, "cotton"), 0.04, smooth=0)
+    under = thicken(Part(creased(verts), inner.faces, "cotton"), 0.04, smooth=0)
     flat = sheet(2.22, 0.50, 100, 26, "terracotta").turned(-2.5)
     flat.moved(0.01, -0.58, 0.0)
-    flat.verts[:, 2] = verts[:, 2].max() + 0.07 + 0.012 * noise(flat.verts, 6.0, 5, 2)
+    # Laid down by hand: its edges wander and it is gathered here and there.
+    flat.verts[:, 1] += 0.035 * noise(flat.verts * [1, 0.4, 1], 2.4, 12) + 0.012 * noise(flat.verts, 7.0, 13)
+    gather = 0.020 * (1 - np.abs(noise(flat.verts * [1, 0.25, 1], 7.0, 14))) ** 3
+    flat.verts[:, 2] = verts[:, 2].max() + 0.09 + gather
     settled = simulate(flat, [under, *bed_obstacles()], 40, bending=0.25, stiffness=9.0, distance=0.008)
     part = thicken(Part(settled, flat.faces, "terracotta", uv=flat.uv, name="throw"), 0.012)
     return [part]
@@ -85,6 +100,9 @@ def inflated(width: float, depth: float, seed: int) -> tuple[Array, tuple[tuple[
     index = np.arange(len(one.verts))
     index[inner] = len(one.verts) + np.arange(len(inner))
     verts = np.vstack([one.verts, one.verts[inner]])
+    # Rounded corners and slightly bowed edges: a square sheet would blow up into a star.
+    q = verts[:, :2] / (np.array([width, depth]) / 2)
+    verts[:, :2] *= 1 + 0.035 * (1 - q[:, ::-1] ** 2) - 0.075 * (np.abs(q[:, :1] * q[:, 1:]) ** 3)
     verts[:, 2] += 0.004 * noise(verts, 9.0, seed)
     verts[len(one.verts):, 2] -= 0.012
     verts[inner, 2] += 0.012

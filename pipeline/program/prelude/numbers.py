@@ -80,9 +80,11 @@ def permutation() -> tuple[int, ...]:
 
 
 ORDER = permutation()
-DIRECTIONS_2 = tuple((math.cos(math.tau * (i + 0.5) / 16) * 1.4, math.sin(math.tau * (i + 0.5) / 16) * 1.4) for i in range(16)) * 16
-DIRECTIONS_3 = ((1, 1, 0), (-1, 1, 0), (1, -1, 0), (-1, -1, 0), (1, 0, 1), (-1, 0, 1), (1, 0, -1), (-1, 0, -1),
-                (0, 1, 1), (0, -1, 1), (0, 1, -1), (0, -1, -1), (1, 1, 0), (-1, 1, 0), (0, -1, 1), (0, -1, -1)) * 16  # fmt: skip
+ANGLES = tuple(math.pi * (i + 0.5) / 8 for i in range(256))
+DIRECTIONS_2 = tuple((1.4 * math.cos(angle), 1.4 * math.sin(angle)) for angle in ANGLES)
+EDGES = [(a, b, 0) for a in (1, -1) for b in (1, -1)]
+EDGES += [(a, 0, b) for a in (1, -1) for b in (1, -1)] + [(0, a, b) for a in (1, -1) for b in (1, -1)]
+DIRECTIONS_3 = tuple((EDGES + EDGES[:4]) * 16)
 
 
 def noise(x: Any, y: Any = 0.0, z: Any = None, seed: Any = 0) -> float:

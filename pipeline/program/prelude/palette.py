@@ -27,7 +27,7 @@ _FAMILY_WORDS: dict[str, str] = {
     "bed": "bed crib cot bunk mattress daybed headboard",
     "seating": "sofa couch armchair chair stool bench pouf ottoman seat loveseat recliner beanbag chaise settee",
     "storage": "wardrobe closet dresser cabinet shelf shelves bookcase bookshelf drawer drawers chest sideboard "
-    "console cupboard rack storage locker trunk basket box bin hanger credenza buffet vanity",
+    "console cupboard rack storage locker trunk basket box bin hanger credenza buffet vanity stand",
     "table": "table desk nightstand counter island workbench bedside",
     "plant": "plant tree flower flowers vase planter cactus bush pot",
     "wall": "mirror picture painting art poster frame clock wall whiteboard blackboard photo",
@@ -75,7 +75,7 @@ def linear_colour(code: str, opacity: float = 1.0) -> tuple[float, float, float,
 
 
 def role_colour(role: str, family: str) -> tuple[float, float, float, float]:
-    """Linear RGBA of a material role on an object of this family; "" is the family's own colour, "front" a darker one."""
+    """Linear RGBA of a material role on an object of this family; "" is the family's colour, "front" a darker one."""
     if role in ROLE_COLOURS:
         return linear_colour(*ROLE_COLOURS[role])
     red, green, blue, opacity = linear_colour(FAMILY_COLOURS.get(family, FAMILY_COLOURS["other"]))

@@ -129,7 +129,14 @@ class Recorder:
         self.record.proxies.append(line)
 
     def light(
-        self, id: Any, kind: Any, at: Any, energy: Any, color: Any = (1.0, 1.0, 1.0), size: Any = 0.1, target: Any = None
+        self,
+        id: Any,
+        kind: Any,
+        at: Any,
+        energy: Any,
+        color: Any = (1.0, 1.0, 1.0),
+        size: Any = 0.1,
+        target: Any = None,
     ) -> None:
         """A lamp: linear colour, energy in Blender's watts."""
         line = {
@@ -168,7 +175,7 @@ class Recorder:
         if kind == "perspective" and not line["fov_y"]:
             raise fail("camera", "a perspective camera needs fov_y, its vertical field of view in radians")
         if kind == "orthographic" and not line["ortho_height"]:
-            raise fail("camera", "an orthographic camera needs ortho_height, the metres that the picture's height spans")
+            raise fail("camera", "orthographic cameras need ortho_height, the metres that its picture's height spans")
         self.record.cameras.append(line)
 
     def furnish(self, id: Any, shapes: Any) -> None:

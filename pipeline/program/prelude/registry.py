@@ -12,13 +12,14 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from . import numbers
+from . import numbers, operations, profiles, sheets, solids
 
 CONSTANTS: dict[str, float] = {"pi": math.pi, "tau": math.tau}
 """Names with a fixed value."""
 
 MATH: tuple[str, ...] = (
-    "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sqrt", "exp", "log", "floor", "ceil", "radians", "degrees", "hypot"
+    "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sqrt", "exp", "log",
+    "floor", "ceil", "radians", "degrees", "hypot",
 )  # fmt: skip
 """Functions of Python's math module that are in the language under their own names."""
 
@@ -32,6 +33,31 @@ CONSTRUCTORS: dict[str, Callable[..., Any]] = {
     "keys": numbers.keys,
     "values": numbers.values,
     "items": numbers.items,
+    "box": solids.box,
+    "rounded_box": solids.rounded_box,
+    "cylinder": solids.cylinder,
+    "cone": solids.cone,
+    "sphere": solids.sphere,
+    "capsule": solids.capsule,
+    "torus": solids.torus,
+    "prism": solids.prism,
+    "lathe": profiles.lathe,
+    "extrude": profiles.extrude,
+    "tube": profiles.tube,
+    "sweep": profiles.sweep,
+    "grid": sheets.grid,
+    "mesh": sheets.mesh,
+    "move": operations.move,
+    "turn": operations.turn,
+    "scale": operations.scale,
+    "mirror": operations.mirror,
+    "array": operations.array,
+    "join": operations.join,
+    "part": operations.part,
+    "material": operations.material,
+    "smooth": operations.smooth,
+    "bounds": operations.bounds,
+    "size_of": operations.size_of,
 }
 """Pure functions of the prelude by name: numbers to numbers, numbers to shapes, shapes to shapes."""
 

@@ -7,6 +7,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,12 +25,12 @@ class Shape:
         uvs: None, or one (u, v) in metres for each face corner, float64 array (sum of face lengths, 2).
     """
 
-    vertices: np.ndarray
+    vertices: Floats
     faces: tuple[tuple[int, ...], ...]
     part: str = ""
     material: str = ""
     smooth: bool = False
-    uvs: np.ndarray | None = None
+    uvs: Floats | None = None
     extra: dict[str, Any] = field(default_factory=dict)
 
     @property

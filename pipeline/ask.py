@@ -1,0 +1,274 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Performs a stage's `Ask`: requests side by side, each validated, each with one repair round."""
+
+from __future__ import annotations
+
+import queue
+import threading
+import time
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import Literal
+
+from pydantic import BaseModel
+
+from .errors import Cancelled, ModelError, ReplyError, RoomError
+from .models.base import ModelClient, Prompt, Reply
+from .models.validate import validate_reply
+from .prompting import PROMPT_LIMIT, make_prompt, repair_prompt
+from .stages.wishes import Ask, Request
+
+MOST_SIDE_BY_SIDE = 4
+_PATIENCE = 2.0
+"""Seconds that a stopped run waits for clients to notice, before it leaves them behind."""
+
+
+@dataclass(frozen=True)
+class AskResult:
+    """One request's validated answer and what it took.
+
+    Attributes:
+        key: the request's key; reply: the validated answer; text: the answer as the model wrote it.
+        model, prompt_tokens, completion_tokens, cost (US dollars or None), seconds: sums over all tries.
+        notes: sentences for the report: what was forgiven, corrected, drifted, left out.
+        prompt_bytes: bytes of prompt text sent, all tries; prompt_hash: of the first try's prompt.
+        tries: calls of the client; 0 when the answer was recalled.
+    """
+
+    key: str
+    reply: BaseModel
+    text: str
+    model: str
+    prompt_tokens: int
+    completion_tokens: int
+    cost: float | None
+    seconds: float
+    notes: tuple[str, ...]
+    prompt_bytes: int
+    prompt_hash: str
+    tries: int
+
+
+@dataclass(frozen=True)
+class AskEvent:
+    """Something worth showing while requests run; `text` is for the artist."""
+
+    key: str
+    kind: Literal["asked", "progress", "repair", "answered", "recalled", "failed"]
+    text: str
+
+
+Recall = Callable[[Prompt], Reply | None]
+Keep = Callable[[AskResult], None]
+OnEvent = Callable[[AskEvent], None]
+
+
+def perform_ask(
+    ask: Ask,
+    stage: str,
+    client: ModelClient,
+    cancel: threading.Event,
+    recall: Recall | None = None,
+    keep: Keep | None = None,
+    on_event: OnEvent | None = None,
+) -> list[AskResult]:
+    """Answer every request, at most four at a time, and return the results in the order of the requests.
+
+    `recall`, `keep` and `on_event` are called on the calling thread only. When one request fails, the others that are
+    already running are let finish and handed to `keep` before the error is raised; those not begun are not sent.
+
+    Args:
+        recall: gives an earlier answer to the same prompt (same hash), so that nothing is paid for twice.
+        keep: is handed each answer as soon as it is validated.
+
+    Raises:
+        ReplyError: an answer stayed unusable after the repair round.
+        ModelError: the service failed or refused.
+        Cancelled: `cancel` was set; answers that had arrived were kept.
+        RoomError: a prompt template does not fit its values.
+    """
+    prompts = [make_prompt(request, stage) for request in ask.requests]
+    tell = on_event or (lambda event: None)
+    results: dict[int, AskResult] = {}
+    for index, (request, prompt) in enumerate(zip(ask.requests, prompts, strict=True)):
+        recalled = _recalled(request, prompt, recall)
+        if recalled is not None:
+            results[index] = recalled
+            tell(AskEvent(request.key, "recalled", "the earlier answer is used again"))
+    todo = [index for index in range(len(prompts)) if index not in results]
+    errors = _run(todo, ask, prompts, client, cancel, results, keep or (lambda result: None), tell)
+    if cancel.is_set() or any(isinstance(error, Cancelled) for error in errors.values()):
+        raise Cancelled
+    if errors:
+        raise errors[min(errors)]
+    return [results[index] for index in range(len(prompts))]
+
+
+def _run(
+    todo: list[int],
+    ask: Ask,
+    prompts: list[Prompt],
+    client: ModelClient,
+    cancel: threading.Event,
+    results: dict[int, AskResult],
+    keep: Keep,
+    tell: OnEvent,
+) -> dict[int, RoomError]:
+    """Run the requests in `todo`; fills `results`, returns the errors by index."""
+    errors: dict[int, RoomError] = {}
+    if not todo:
+        return errors
+    events: queue.SimpleQueue[AskEvent | tuple[int, Future[AskResult | None]]] = queue.SimpleQueue()
+    give_up = threading.Event()
+
+    def work(index: int) -> AskResult | None:
+        if give_up.is_set() or cancel.is_set():
+            return None
+        try:
+            return _answer(ask.requests[index], prompts[index], client, cancel, events.put)
+        except RoomError as error:
+            # An unusable answer concerns its own request; a failing service concerns all of them.
+            if not isinstance(error, ReplyError):
+                give_up.set()
+            raise
+
+    pool = ThreadPoolExecutor(min(MOST_SIDE_BY_SIDE, len(todo)), thread_name_prefix="code-as-room-ask")
+    try:
+        for index in todo:
+            future = pool.submit(work, index)
+            future.add_done_callback(lambda done, index=index: events.put((index, done)))  # type: ignore[misc]
+        waiting, deadline = len(todo), float("inf")
+        while waiting and time.monotonic() < deadline:
+            if cancel.is_set():
+                deadline = min(deadline, time.monotonic() + _PATIENCE)
+            try:
+                event = events.get(timeout=0.1)
+            except queue.Empty:
+                continue
+            if isinstance(event, AskEvent):
+                tell(event)
+                continue
+            waiting -= 1
+            _collect(*event, ask, results, errors, keep, tell)
+    finally:
+        give_up.set()
+        pool.shutdown(wait=False, cancel_futures=True)
+    return errors
+
+
+def _collect(
+    index: int,
+    future: Future[AskResult | None],
+    ask: Ask,
+    results: dict[int, AskResult],
+    errors: dict[int, RoomError],
+    keep: Keep,
+    tell: OnEvent,
+) -> None:
+    """Take one finished request's outcome."""
+    key = ask.requests[index].key
+    error = future.exception()
+    if error is None:
+        result = future.result()
+        if result is not None:
+            results[index] = result
+            keep(result)
+            tell(AskEvent(key, "answered", f"answered by {result.model} in {result.seconds:.1f} s"))
+        return
+    if not isinstance(error, RoomError):
+        problem = ModelError(f"The model client failed unexpectedly ({type(error).__name__}).", "Run the stage again.")
+        problem.__cause__ = error
+        error = problem
+    errors[index] = error
+    tell(AskEvent(key, "failed", str(error)))
+
+
+def _recalled(request: Request, prompt: Prompt, recall: Recall | None) -> AskResult | None:
+    """The earlier answer to this prompt, if there is one that still validates."""
+    earlier = recall(prompt) if recall else None
+    if earlier is None:
+        return None
+    try:
+        reply, notes = validate_reply(earlier.text, request.reply, salvage=True)
+    except ReplyError:
+        return None
+    return AskResult(
+        key=request.key,
+        reply=reply,
+        text=earlier.text,
+        model=earlier.model,
+        prompt_tokens=0,
+        completion_tokens=0,
+        cost=None,
+        seconds=0.0,
+        notes=notes,
+        prompt_bytes=0,
+        prompt_hash=prompt.hash,
+        tries=0,
+    )
+
+
+def _answer(
+    request: Request, prompt: Prompt, client: ModelClient, cancel: threading.Event, put: OnEvent
+) -> AskResult:
+    """Ask, validate, and on an unusable answer ask once more with the problems quoted back."""
+    started = time.monotonic()
+    said: list[tuple[Prompt, Reply]] = []
+
+    def call(sent: Prompt) -> str:
+        reply = client.answer(sent, cancel, lambda text: put(AskEvent(request.key, "progress", text)))
+        said.append((sent, reply))
+        return reply.text
+
+    put(AskEvent(request.key, "asked", f"asking {client.name}"))
+    text = ""
+    try:
+        text = call(prompt)
+        reply, notes = validate_reply(text, request.reply)
+        return _result(request.key, reply, text, notes, said, started)
+    except ReplyError as error:
+        first = error
+    put(AskEvent(request.key, "repair", first.message))
+    second = repair_prompt(prompt, first.problems or (first.message,), text)
+    try:
+        repaired = call(second)
+        reply, notes = validate_reply(repaired, request.reply, salvage=True)
+        notes = (f"The first answer could not be used: {first.message}", *notes)
+        return _result(request.key, reply, repaired, notes, said, started)
+    except ReplyError as error:
+        last = error
+    try:
+        reply, notes = validate_reply(text, request.reply, salvage=True)
+    except ReplyError:
+        raise last if last.problems else first from None
+    return _result(request.key, reply, text, (f"The repair round failed: {last.message}", *notes), said, started)
+
+
+def _result(
+    key: str,
+    reply: BaseModel,
+    text: str,
+    notes: tuple[str, ...],
+    said: list[tuple[Prompt, Reply]],
+    started: float,
+) -> AskResult:
+    """Put the tries together into one result."""
+    largest = max(len(prompt.text.encode()) for prompt, _ in said)
+    if largest > PROMPT_LIMIT:
+        notes = (*notes, f"The prompt's text was {largest / 1000:.0f} kB long.")
+    costs = [answer.cost for _, answer in said if answer.cost is not None]
+    return AskResult(
+        key=key,
+        reply=reply,
+        text=text,
+        model=said[-1][1].model,
+        prompt_tokens=sum(answer.prompt_tokens for _, answer in said),
+        completion_tokens=sum(answer.completion_tokens for _, answer in said),
+        cost=sum(costs) if costs else None,
+        seconds=time.monotonic() - started,
+        notes=tuple(note for _, answer in said for note in answer.notes) + notes,
+        prompt_bytes=sum(len(prompt.text.encode()) for prompt, _ in said),
+        prompt_hash=said[0][0].hash,
+        tries=len(said),
+    )

@@ -1,0 +1,509 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Fit the camera, and the floor in metres, to the room's corners as the picture shows them.
+
+What the picture cannot tell is assumed, softly, and said in a finding. Seen straight down, focal length, camera
+height and wall height cannot be told apart: the given or assumed wall height settles it. Without wall tops the view
+is taken for orthographic unless the caller knows better; then an ordinary lens is assumed, and right angles are the
+only cue for tilt. See docs/geometry.md.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Literal
+
+import numpy as np
+
+from ..artifacts.analysis import Finding
+from ..artifacts.camera import CameraModel
+from ..artifacts.common import ImagePoint, Metres2
+from .camera import CENTRE, GeometryError, Kind, Projector, camera_from_projector, image_points
+from .corners import Corners, check_corners, main_direction, similarity
+from .fit_problem import (
+    AIM_X,
+    AIM_Y,
+    CAMERA_UNKNOWNS,
+    DISTANCE,
+    HEIGHT,
+    ORTHO_DISTANCE,
+    ROLL,
+    SCALE,
+    TILT_X,
+    TILT_Y,
+    Assumptions,
+    Problem,
+    square_links,
+)
+from .polygon import Floats, bounding_rectangle, signed_area
+
+ASSUMED_HEIGHT = 2.7
+ASSUMED_HEIGHT_SPREAD = 0.08
+GIVEN_HEIGHT_SPREAD = 0.01
+ASSUMED_FOCAL = 1.4  # of the picture's longer side: about 39 degrees, an ordinary lens
+CORNER_NOISE = 0.003  # of the picture's longer side: how far off corners are expected to be
+FLAT, DEEP = 1.01, 1.05  # wall tops larger than the floor by less: orthographic; by more: perspective
+SQUARE_DEGREES = 1.5
+SQUARE_SHARE = 0.6  # part of the outline along the axes from which a room counts as right-angled
+HeightSource = Literal["given", "measured", "assumed"]
+
+
+@dataclass(frozen=True)
+class CameraFit:
+    """A fitted camera and the floor that belongs to it.
+
+    Attributes:
+        floor: metric corners, counter-clockwise, origin at the bounding rectangle's centre.
+        order: for each corner of `floor`, its index in the polygon that was given.
+        height: wall height in metres; height_source: "measured" only where the picture's tilt told it.
+        error_px: root mean square reprojection error of floor corners and wall tops, pixels.
+        squared: whether walls within about a degree of the axes were put exactly on them.
+    """
+
+    camera: CameraModel
+    floor: list[Metres2]
+    order: list[int]
+    height: float
+    height_source: HeightSource
+    error_px: float
+    squared: bool
+    findings: list[Finding] = field(default_factory=list)
+
+
+def fit_camera(
+    image_size: tuple[int, int],
+    floor_polygon: Sequence[ImagePoint],
+    floor_size: float | Sequence[float] | Sequence[Sequence[float]],
+    wall_top_polygon: Sequence[ImagePoint] | None = None,
+    height: float | None = None,
+    kind: Kind | None = None,
+    principal: ImagePoint | None = None,
+) -> CameraFit:
+    """Fit with whatever is known of the floor.
+
+    Args:
+        floor_size: the width of the floor's bounding rectangle, or its (width, depth), or all corners in metres in
+            the order of `floor_polygon`. Corners that contradict the picture are used for their size only.
+
+    Other arguments, result and errors as in `fit_from_known_length`.
+    """
+    if isinstance(floor_size, int | float):
+        return fit_from_known_length(
+            image_size, floor_polygon, floor_size, None, wall_top_polygon, height, kind, principal
+        )
+    values = np.asarray(floor_size, dtype=float)
+    if values.ndim == 1 and len(values) in (1, 2, 3):
+        depth = float(values[1]) if len(values) > 1 else None
+        return fit_from_known_length(
+            image_size, floor_polygon, float(values[0]), depth, wall_top_polygon, height, kind, principal
+        )
+    if values.ndim != 2 or values.shape[1] != 2:
+        raise GeometryError("The floor's size must be a width, a width and a depth, or its corners in metres.")
+    problem: str
+    try:
+        fit = fit_from_known_floor(image_size, floor_polygon, values, wall_top_polygon, height, kind, principal)
+        if fit.error_px <= 4 * CORNER_NOISE * max(image_size):
+            return fit
+        problem = f"The floor in metres does not fit the picture (corners are off by {fit.error_px:.0f} pixels)"
+    except GeometryError as error:
+        problem = error.message.rstrip(".")
+    low_x, low_y, high_x, high_y = bounding_rectangle(values)
+    fit = fit_from_known_length(
+        image_size, floor_polygon, high_x - low_x, high_y - low_y, wall_top_polygon, height, kind, principal
+    )
+    fit.findings.append(_warning("floor", f"{problem}; its shape was taken from the picture and its size was kept."))
+    return fit
+
+
+def fit_from_known_floor(
+    image_size: tuple[int, int],
+    floor_polygon: Sequence[ImagePoint],
+    floor: Sequence[Sequence[float]] | Floats,
+    wall_top_polygon: Sequence[ImagePoint] | None = None,
+    height: float | None = None,
+    kind: Kind | None = None,
+    principal: ImagePoint | None = None,
+) -> CameraFit:
+    """Fit the camera to a floor whose corners are known in metres, in the same order as `floor_polygon`.
+
+    Raises:
+        GeometryError: as `fit_from_known_length`, or the two outlines have different numbers of corners.
+    """
+    setup = _Setup.of(image_size, floor_polygon, wall_top_polygon, height, kind, principal)
+    metric = np.asarray(floor, dtype=float).reshape(-1, 2)
+    if len(metric) != len(floor_polygon):
+        raise GeometryError("The floor in metres and its outline in the picture have different numbers of corners.")
+    if not np.isfinite(metric).all():
+        raise GeometryError("A corner of the floor in metres is not a number.")
+    metric = _same_order(setup, metric[setup.corners.order])
+    low_x, low_y, high_x, high_y = bounding_rectangle(metric)
+    metric = metric - ((low_x + high_x) / 2, (low_y + high_y) / 2)
+    return _fit(setup, metric, None, None)
+
+
+def fit_from_known_length(
+    image_size: tuple[int, int],
+    floor_polygon: Sequence[ImagePoint],
+    width: float,
+    depth: float | None = None,
+    wall_top_polygon: Sequence[ImagePoint] | None = None,
+    height: float | None = None,
+    kind: Kind | None = None,
+    principal: ImagePoint | None = None,
+) -> CameraFit:
+    """Fit the camera and the floor's shape from one known length (or two).
+
+    Args:
+        image_size: width and height in pixels.
+        floor_polygon: the floor's corners in the picture, 0-1000, one after another.
+        width, depth: extent of the floor's bounding rectangle in metres, x and y.
+        wall_top_polygon: the inner upper edges of the same wall corners, in the same order, where they are visible.
+        height: wall height in metres when known; otherwise about 2.7 m is assumed.
+        kind: the kind of camera when known; None decides by how much larger the wall tops are than the floor.
+        principal: where the optical axis meets the picture, 0-1000; None is the centre.
+
+    Raises:
+        GeometryError: corners that no room can have (fewer than three, on a line, not finite), or no positive size.
+    """
+    for value in (width, depth):
+        if value is not None and not (math.isfinite(value) and 0.1 <= value <= 1000):
+            raise GeometryError(
+                "The known length must lie between 0.1 and 1000 metres.", "Give the room's width in metres."
+            )
+    setup = _Setup.of(image_size, floor_polygon, wall_top_polygon, height, kind, principal)
+    return _fit(setup, None, float(width), None if depth is None else float(depth))
+
+
+@dataclass
+class _Setup:
+    """What both entry points have in common, in pixels."""
+
+    corners: Corners
+    floor: Floats
+    tops: Floats | None
+    size: Floats
+    principal: Floats
+    height: float
+    height_given: bool
+    kind: Kind | None
+    findings: list[Finding]
+
+    @staticmethod
+    def of(
+        image_size: tuple[int, int],
+        floor: Sequence[ImagePoint],
+        tops: Sequence[ImagePoint] | None,
+        height: float | None,
+        kind: Kind | None,
+        principal: ImagePoint | None,
+    ) -> _Setup:
+        if min(image_size) < 2:
+            raise GeometryError("The picture is too small to measure in.")
+        corners = check_corners(image_points(floor), None if tops is None else image_points(tops))
+        unit = np.array(image_size, dtype=float) / 1000.0
+        findings = corners.findings
+        given = height is not None and math.isfinite(height) and 1.0 <= height <= 20.0
+        if height is not None and not given:
+            findings.append(
+                _warning("height", f"A wall height of {height:g} m cannot be right; {ASSUMED_HEIGHT} m was assumed.")
+            )
+        centre = CENTRE if principal is None else (principal.x, principal.y)
+        return _Setup(
+            corners,
+            corners.floor * unit,
+            None if corners.tops is None else corners.tops * unit,
+            np.array(image_size, dtype=float),
+            np.array(centre) * unit,
+            float(height) if given and height is not None else ASSUMED_HEIGHT,
+            given,
+            kind,
+            findings,
+        )
+
+    @property
+    def noise(self) -> float:
+        """Pixels by which a corner is expected to be off."""
+        return CORNER_NOISE * float(self.size.max())
+
+
+def _warning(about: str, message: str) -> Finding:
+    return Finding(about=about, message=message, severity="warning")
+
+
+def _note(about: str, message: str) -> Finding:
+    return Finding(about=about, message=message)
+
+
+def _same_order(setup: _Setup, metric: Floats) -> Floats:
+    """The metric corners as given, or turned round or reversed when only that lies as the picture does."""
+    orders = [np.roll(way, -k, axis=0) for way in (metric, metric[::-1]) for k in range(len(metric))]
+    misfits = [_turned_similarity(setup, order)[2] for order in orders]
+    best = int(np.argmin(misfits))
+    extent = float(np.linalg.norm(np.ptp(setup.floor, axis=0)))
+    if misfits[0] > 0.1 * extent and misfits[best] < 0.5 * misfits[0]:
+        setup.findings.append(_warning("floor", "The floor in metres was listed in another order than in the picture."))
+        return orders[best]
+    return metric
+
+
+def _turned_similarity(setup: _Setup, metric: Floats) -> tuple[float, float, float]:
+    """Pixels for a metre, camera roll in degrees and misfit in pixels of the best similarity metres -> picture."""
+    seen = setup.floor[:, 0] - 1j * setup.floor[:, 1]
+    flat = metric[:, 0] + 1j * metric[:, 1]
+    seen, flat = seen - seen.mean(), flat - flat.mean()
+    factor = complex(np.vdot(flat, seen) / max(1e-12, float(np.vdot(flat, flat).real)))
+    roll = -math.degrees(math.atan2(factor.imag, factor.real))
+    misfit = float(np.sqrt(np.mean(np.abs(seen - factor * flat) ** 2)))
+    # A wrong order can fit a square room turned by 90 degrees; rooms lie upright in their picture.
+    return abs(factor), roll, misfit if abs(roll) < 45 else misfit + 10 * float(setup.size.max())
+
+
+def _fit(setup: _Setup, known: Floats | None, width: float | None, depth: float | None) -> CameraFit:
+    solved = [_solve_kind(setup, kind, known, width, depth) for kind in _kinds(setup)]
+    problem, x = min(solved, key=lambda s: s[0].error_px(s[1]))
+    if len(solved) == 2:
+        # Too close to call by scale: the simpler camera unless the pinhole explains the corners clearly better.
+        flat, deep = solved
+        clear = deep[0].error_px(deep[1]) < 0.7 * flat[0].error_px(flat[1])
+        problem, x = deep if clear else flat
+    return _finish(setup, problem, x)
+
+
+def _kinds(setup: _Setup) -> list[Kind]:
+    """The kinds of camera worth trying, simplest first."""
+    if setup.tops is None:
+        if setup.kind is None:
+            setup.findings.append(_note("camera", "No wall tops are visible; the view was taken for orthographic."))
+        return [setup.kind or "orthographic"]
+    scale = similarity(setup.floor, setup.tops)[0]
+    if setup.kind == "orthographic" and scale > DEEP:
+        setup.findings.append(
+            _warning("camera", "The wall tops are larger than the floor: the view is a perspective one.")
+        )
+        return ["perspective"]
+    if setup.kind == "perspective" and scale < FLAT:
+        setup.findings.append(
+            _warning("camera", "The wall tops are no larger than the floor: the view was taken for orthographic.")
+        )
+        return ["orthographic"]
+    if setup.kind is not None:
+        return [setup.kind]
+    if scale < FLAT:
+        return ["orthographic"]
+    return ["perspective"] if scale > DEEP else ["orthographic", "perspective"]
+
+
+def _solve_kind(
+    setup: _Setup, kind: Kind, known: Floats | None, width: float | None, depth: float | None
+) -> tuple[Problem, Floats]:
+    problem = _first_problem(setup, kind, known, width, depth)
+    candidates = [problem.solve(problem.start(camera)) for camera in _start_cameras(setup, problem)]
+    x = min(candidates, key=lambda c: c[1])[0]
+    problem, x = _with_measured_noise(problem, x)
+    if known is None:
+        problem, x = _squared(setup, problem, x)
+    return _simplified(setup, problem, x)
+
+
+def _first_problem(
+    setup: _Setup, kind: Kind, known: Floats | None, width: float | None, depth: float | None
+) -> Problem:
+    perspective, bare = kind == "perspective", setup.tops is None
+    assumed = Assumptions(
+        height=setup.height,
+        height_spread=GIVEN_HEIGHT_SPREAD if setup.height_given else ASSUMED_HEIGHT_SPREAD,
+        focal=ASSUMED_FOCAL * float(setup.size.max()),
+        focal_spread=0.35 if bare else 0.7,
+        tilt=4.0 if bare and known is None else 12.0,
+        width=width,
+        depth=depth,
+        size_spread=0.002 if depth is None else 0.03,
+    )
+    frozen: set[int] = set()
+    if bare:
+        frozen.add(HEIGHT)
+        if not perspective and known is None:
+            frozen |= {TILT_X, TILT_Y}
+    link = tuple(range(len(setup.floor)))
+    return Problem(
+        perspective, setup.floor, setup.tops, setup.size, setup.principal, assumed, known, link, link, setup.noise,
+        frozenset(frozen),
+    )  # fmt: skip
+
+
+def _start_cameras(setup: _Setup, problem: Problem) -> list[Floats]:
+    """Start values of the camera unknowns: straight down, and tilted as far as the wall tops say."""
+    camera = np.zeros(CAMERA_UNKNOWNS)
+    camera[HEIGHT] = math.log(setup.height)
+    if problem.known is not None:
+        scale, roll, _ = _turned_similarity(setup, problem.known)
+        camera[ROLL] = roll if abs(roll) < 45 else 0.0
+    else:
+        upright = setup.floor * (1.0, -1.0)
+        direction, agreement = main_direction(upright)
+        camera[ROLL] = -direction if agreement > 0.7 else 0.0
+        scale = _seen_width(upright, -float(camera[ROLL])) / (problem.assumed.width or 1.0)
+    camera[SCALE] = math.log(scale)
+    camera[DISTANCE] = math.log(problem.assumed.focal / scale if problem.perspective else ORTHO_DISTANCE)
+    if setup.tops is None:
+        return [_aimed(problem, camera)]
+    tops_scale, shift, _ = similarity(setup.floor, setup.tops)
+    tilted = camera.copy()
+    if problem.perspective:
+        nearer = max(0.005, 1 - 1 / tops_scale)
+        camera[DISTANCE] = tilted[DISTANCE] = math.log(setup.height / nearer)
+        # Upright lines meet where the camera's own foot point shows (the nadir): the fixed point of floor -> tops.
+        off = (shift / (1 - tops_scale) - setup.principal) / (scale * math.exp(camera[DISTANCE]))
+    else:
+        off = -(np.nanmean(setup.tops - setup.floor, axis=0)) / (scale * setup.height)
+    limit = math.tan(math.radians(30))
+    off = off * min(1.0, limit / max(1e-9, float(np.hypot(*off))))
+    angle = np.degrees(np.arctan(off))
+    tilted[TILT_X], tilted[TILT_Y] = angle[1], -angle[0]
+    half = tilted.copy()
+    half[[TILT_X, TILT_Y]] /= 2
+    return [_aimed(problem, start) for start in (camera, half, tilted)]
+
+
+def _seen_width(upright: Floats, degrees: float) -> float:
+    """Extent along the room's x axis in pixels, for a room that appears turned by so many degrees."""
+    angle = math.radians(degrees)
+    along = upright @ np.array((math.cos(angle), math.sin(angle)))
+    return float(np.ptp(along))
+
+
+def _aimed(problem: Problem, camera: Floats) -> Floats:
+    """Shift the camera over the floor so that the corners' mean comes to lie where it belongs."""
+    ground = problem.lens(camera).on_plane(problem.floor, 0.0)[:, :2]
+    wanted = np.zeros(2) if problem.known is None else problem.known.mean(axis=0)
+    aimed = camera.copy()
+    aimed[[AIM_X, AIM_Y]] += wanted - np.nan_to_num(np.nanmean(ground, axis=0))
+    return aimed
+
+
+def _spread(problem: Problem, x: Floats) -> float:
+    """Standard deviation of a measured coordinate, from the misfit and the degrees of freedom; nan without any."""
+    free = problem.freedom(x)
+    return math.sqrt(float((problem.pixel_errors(x) ** 2).sum()) / free) if free > 0 else math.nan
+
+
+def _with_measured_noise(problem: Problem, x: Floats) -> tuple[Problem, Floats]:
+    """Solve again with the noise that the misfit shows, so that exact corners are not bent by assumptions."""
+    if problem.freedom(x) <= 0:
+        return problem, x
+    start = problem.sigma
+    for _ in range(4):
+        measured = min(1.5 * start, max(0.005 * start, _spread(problem, x)))
+        if measured > 0.8 * problem.sigma:
+            break
+        problem = replace(problem, sigma=measured)
+        x = problem.solve(x)[0]
+    return problem, x
+
+
+def _squared(setup: _Setup, problem: Problem, x: Floats) -> tuple[Problem, Floats]:
+    """Put walls that nearly run along an axis exactly on it, where the corners' noise allows that."""
+    link_x, link_y, share = square_links(problem.corners(x), setup.floor, SQUARE_DEGREES, 1.5 * setup.noise)
+    if share < SQUARE_SHARE or max(link_x) < 1 or max(link_y) < 1:
+        return problem, x
+    strict, start = replace(problem, sigma=setup.noise).relinked(x, link_x, link_y)
+    strict, found = _with_measured_noise(strict, strict.solve(start)[0])
+    free, bound = _spread(problem, x), _spread(strict, found)
+    # The noise may look three times as large with the walls made straight: with few corners it is known no better.
+    limit = 1.5 * setup.noise if math.isnan(free) else min(2 * setup.noise, max(3 * free, 0.1 * setup.noise))
+    if math.isnan(bound):
+        bound = strict.error_px(found)
+    return (strict, found) if bound <= limit else (problem, x)
+
+
+def _simplified(setup: _Setup, problem: Problem, x: Floats) -> tuple[Problem, Floats]:
+    """No roll, and no tilt, where the corners fit as well without."""
+    for unknowns, small in (((ROLL,), 1.0), ((TILT_X, TILT_Y), 1.5)):
+        values = x[list(unknowns)]
+        if not values.any() or float(np.hypot.reduce(values)) > small:
+            continue
+        start = x.copy()
+        start[list(unknowns)] = 0.0
+        plain = replace(problem, frozen=problem.frozen | set(unknowns))
+        found = plain.solve(start)[0]
+        before, after = problem.error_px(x), plain.error_px(found)
+        if after <= 1.15 * before + 0.02 * setup.noise:
+            problem, x = plain, found
+    return problem, x
+
+
+def _finish(setup: _Setup, problem: Problem, x: Floats) -> CameraFit:
+    """Move the origin to the bounding rectangle's centre, make the known length exact, and report."""
+    lens, corners, height = problem.lens(x), problem.corners(x), problem.height(x)
+    linked = len(set(problem.link_x)) < len(corners) or len(set(problem.link_y)) < len(corners)
+    if problem.known is None and setup.tops is None and not linked:
+        corners = lens.on_plane(setup.floor, 0.0)[:, :2]  # nothing else measures the corners: take them as seen
+    low_x, low_y, high_x, high_y = bounding_rectangle(corners)
+    centre = np.array(((low_x + high_x) / 2, (low_y + high_y) / 2, 0.0))
+    factor = 1.0
+    if problem.known is None:
+        assumed = problem.assumed
+        ratios = [
+            want / have
+            for want, have in ((assumed.width, high_x - low_x), (assumed.depth, high_y - low_y))
+            if want is not None
+        ]
+        factor = math.exp(float(np.mean(np.log(ratios))))
+        if max(ratios) / min(ratios) > 1.08:
+            setup.findings.append(
+                _warning("floor", "The known width and depth do not agree with the floor's shape in the picture.")
+            )
+    else:
+        centre[:] = 0.0
+    lens = replace(
+        lens,
+        position=(lens.position - centre) * factor,
+        scale=lens.scale if lens.perspective else lens.scale / factor,
+    )
+    corners = (corners - centre[:2]) * factor
+    height *= factor
+    _check(setup, problem, x, corners, lens)
+    floor = [(float(px), float(py)) for px, py in corners]
+    error = _error_px(setup, lens, corners, height)
+    source = _height_source(setup, problem, x)
+    return CameraFit(
+        camera_from_projector(lens), floor, setup.corners.order, height, source, error, linked, setup.findings
+    )
+
+
+def _error_px(setup: _Setup, lens: Projector, corners: Floats, height: float) -> float:
+    level = np.concatenate([corners, np.zeros((len(corners), 1))], axis=1)
+    errors = [lens.pixels(level) - setup.floor]
+    if setup.tops is not None:
+        level[:, 2] = height
+        errors.append((lens.pixels(level) - setup.tops)[np.isfinite(setup.tops[:, 0])])
+    return float(np.sqrt(np.mean(np.sum(np.concatenate(errors) ** 2, axis=1))))
+
+
+def _height_source(setup: _Setup, problem: Problem, x: Floats) -> HeightSource:
+    if setup.height_given:
+        return "given"
+    tilt = float(np.hypot(x[TILT_X], x[TILT_Y]))
+    if setup.tops is not None and problem.perspective and tilt > 5 and problem.sigma < setup.noise / 3:
+        return "measured"
+    setup.findings.append(
+        _note("height", f"The height of the walls is not known; about {ASSUMED_HEIGHT} m was assumed.")
+    )
+    return "assumed"
+
+
+def _check(setup: _Setup, problem: Problem, x: Floats, corners: Floats, lens: Projector) -> None:
+    """Refuse a camera that cannot be, doubt one that is unlikely."""
+    numbers = (*corners.ravel(), *lens.position, lens.scale)
+    if not np.isfinite(numbers).all() or signed_area(corners) <= 0:
+        raise GeometryError("No camera fits these corners.", "Check the floor's corners and the wall tops.")
+    tilt = float(np.hypot(x[TILT_X], x[TILT_Y]))
+    if tilt > 25:
+        setup.findings.append(
+            _warning("camera", f"The camera looks {tilt:.0f} degrees off straight down; footprints are less exact.")
+        )
+    if problem.error_px(x) > 4 * setup.noise:
+        setup.findings.append(
+            _warning("camera", f"The corners fit this camera only to {problem.error_px(x):.0f} pixels; check them.")
+        )

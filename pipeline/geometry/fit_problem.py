@@ -1,0 +1,227 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The camera fit as a least-squares problem: unknowns, what the picture shows, and what is assumed.
+
+The unknowns are chosen to be nearly independent: pixels for a metre at the floor point that the camera aims at, the
+distance to that point, tilt, roll, that point, the wall height, and the corners' metric coordinates.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .camera import Projector, tilt_rotation
+from .least_squares import levenberg_marquardt
+from .polygon import Floats
+
+SCALE, DISTANCE, TILT_X, TILT_Y, ROLL, AIM_X, AIM_Y, HEIGHT = range(8)
+CAMERA_UNKNOWNS = 8
+STEPS = np.array((0.05, 0.05, 3.0, 3.0, 2.0, 0.2, 0.2, 0.05))
+ORTHO_DISTANCE = 10.0
+ROBUST_FROM = 4.0  # corners off by more than this many standard deviations pull less
+
+
+@dataclass(frozen=True)
+class Assumptions:
+    """Standard deviations of what is assumed; each pulls, none is a rule.
+
+    Attributes:
+        height, focal: expected wall height in metres and focal length in pixels, with the spread of their logarithms.
+        tilt, roll: degrees around none.
+        square: degrees by which a wall may leave the two main directions before it counts as slanted.
+        width, depth: known extent of the floor's bounding rectangle in metres, or None, with the log's spread.
+    """
+
+    height: float
+    height_spread: float
+    focal: float
+    focal_spread: float
+    tilt: float
+    roll: float = 10.0
+    square: float = 1.0
+    width: float | None = None
+    depth: float | None = None
+    size_spread: float = 0.002
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One fit.
+
+    Attributes:
+        floor, tops: (N, 2) pixels, y down; tops with nan rows where unknown, or None.
+        known: (N, 2) metric corners when they are given; then only the camera and the height are unknown.
+        link_x, link_y: for each corner, which x and which y coordinate it uses; walls along an axis share one.
+        sigma: pixels by which corners are expected to be off.
+        frozen: camera unknowns that keep their start value.
+    """
+
+    perspective: bool
+    floor: Floats
+    tops: Floats | None
+    size: Floats
+    principal: Floats
+    assumed: Assumptions
+    known: Floats | None
+    link_x: tuple[int, ...]
+    link_y: tuple[int, ...]
+    sigma: float
+    frozen: frozenset[int] = frozenset()
+
+    def lens(self, x: Floats) -> Projector:
+        """The camera that the unknowns describe."""
+        rotation = tilt_rotation(float(x[TILT_X]), float(x[TILT_Y]), float(x[ROLL]))
+        scale, distance = math.exp(min(20.0, x[SCALE])), math.exp(min(12.0, x[DISTANCE]))
+        position = np.array((x[AIM_X], x[AIM_Y], 0.0)) + distance * rotation[:, 2]
+        focal = scale * distance if self.perspective else scale
+        return Projector(self.perspective, rotation, position, focal, self.principal, self.size)
+
+    def corners(self, x: Floats) -> Floats:
+        """Metric corners (N, 2)."""
+        if self.known is not None:
+            return self.known
+        count = max(self.link_x) + 1
+        shared = x[CAMERA_UNKNOWNS:]
+        return np.stack([shared[list(self.link_x)], shared[count:][list(self.link_y)]], axis=1)
+
+    def height(self, x: Floats) -> float:
+        """Wall height in metres."""
+        return math.exp(min(5.0, float(x[HEIGHT])))
+
+    def pixel_errors(self, x: Floats) -> Floats:
+        """Reprojection errors in pixels, (M, 2), floor first, wall tops that are known after."""
+        lens, corners = self.lens(x), self.corners(x)
+        level = np.concatenate([corners, np.zeros((len(corners), 1))], axis=1)
+        errors = lens.pixels(level) - self.floor
+        if self.tops is None:
+            return errors
+        level[:, 2] = self.height(x)
+        above = (lens.pixels(level) - self.tops)[np.isfinite(self.tops[:, 0])]
+        return np.concatenate([errors, above])
+
+    def error_px(self, x: Floats) -> float:
+        """Root mean square distance between corners as given and as seen by the camera, pixels."""
+        return float(np.sqrt(np.mean(np.sum(self.pixel_errors(x) ** 2, axis=1))))
+
+    def residuals(self, x: Floats) -> Floats:
+        """All residuals in units of their standard deviations."""
+        relative = self.pixel_errors(x).ravel() / self.sigma / ROBUST_FROM
+        # Pseudo-Huber: quadratic for small errors, linear for large ones.
+        seen = np.sign(relative) * ROBUST_FROM * np.sqrt(2 * (np.sqrt(1 + relative**2) - 1))
+        return np.concatenate([seen, self._camera_priors(x), self._floor_priors(x)])
+
+    def _camera_priors(self, x: Floats) -> Floats:
+        assumed = self.assumed
+        priors = [
+            (x[HEIGHT] - math.log(assumed.height)) / assumed.height_spread,
+            x[TILT_X] / assumed.tilt,
+            x[TILT_Y] / assumed.tilt,
+            x[ROLL] / assumed.roll,
+        ]
+        if self.perspective:
+            priors.append((x[SCALE] + x[DISTANCE] - math.log(assumed.focal)) / assumed.focal_spread)
+        return np.array(priors)
+
+    def _floor_priors(self, x: Floats) -> Floats:
+        if self.known is not None:
+            return np.zeros(0)
+        corners, assumed = self.corners(x), self.assumed
+        step = np.roll(corners, -1, axis=0) - corners
+        # sin(2 angle) / 2: the angle to the nearer axis, smooth up to 45 degrees.
+        leaning = np.degrees(step[:, 0] * step[:, 1] / np.maximum(1e-12, (step**2).sum(axis=1))) / assumed.square
+        slant = np.sign(leaning) * np.sqrt(np.log1p(leaning**2))  # Cauchy: a slanted wall costs a bounded amount
+        middle = corners.mean(axis=0)  # the floor may lie anywhere: keep it where the start put it
+        extent = np.maximum(1e-6, np.ptp(corners, axis=0))
+        sizes = [
+            math.log(have / want) / assumed.size_spread
+            for have, want in ((extent[0], assumed.width), (extent[1], assumed.depth))
+            if want is not None
+        ]
+        return np.concatenate([slant, middle, sizes])
+
+    def active(self, x: Floats) -> Floats:
+        """Which unknowns are solved for, as a mask."""
+        mask = np.ones(len(x), dtype=bool)
+        mask[list(self.frozen)] = False
+        if not self.perspective:
+            mask[DISTANCE] = False
+        return mask.astype(float)
+
+    def freedom(self, x: Floats) -> int:
+        """Measured coordinates less unknowns that they have to decide; above 0 the misfit tells the noise."""
+        unknowns = int(self.active(x).sum()) - (0 if self.known is not None else 3)
+        if self.tops is None:
+            unknowns -= int(HEIGHT not in self.frozen)
+        return 2 * len(self.pixel_errors(x)) - unknowns
+
+    def solve(self, start: Floats, iterations: int = 80) -> tuple[Floats, float]:
+        """Best unknowns and their cost, from a start vector."""
+        mask = self.active(start) > 0
+        steps = np.concatenate([STEPS, np.full(len(start) - CAMERA_UNKNOWNS, 0.05)])
+
+        def some(values: Floats) -> Floats:
+            full = start.copy()
+            full[mask] = values
+            return self.residuals(full)
+
+        solution = levenberg_marquardt(some, start[mask], steps[mask], iterations)
+        result = start.copy()
+        result[mask] = solution.x
+        return result, solution.cost
+
+    def start(self, camera: Floats) -> Floats:
+        """Full start vector: corners are seen through the start camera onto the floor."""
+        if self.known is not None:
+            return camera.copy()
+        ground = self.lens(camera).on_plane(self.floor, 0.0)[:, :2]
+        ground = np.nan_to_num(ground)
+        return np.concatenate([camera, _mean_by(ground[:, 0], self.link_x), _mean_by(ground[:, 1], self.link_y)])
+
+    def relinked(self, x: Floats, link_x: tuple[int, ...], link_y: tuple[int, ...]) -> tuple[Problem, Floats]:
+        """The same problem with other shared coordinates, and the unknowns carried over."""
+        corners = self.corners(x)
+        moved = np.concatenate([x[:CAMERA_UNKNOWNS], _mean_by(corners[:, 0], link_x), _mean_by(corners[:, 1], link_y)])
+        return replace(self, link_x=link_x, link_y=link_y), moved
+
+
+def _mean_by(values: Floats, link: tuple[int, ...]) -> Floats:
+    index = np.array(link)
+    mean: Floats = np.bincount(index, weights=values) / np.bincount(index)
+    return mean
+
+
+def square_links(
+    corners: Floats, pixels: Floats, degrees: float, slack_px: float
+) -> tuple[tuple[int, ...], tuple[int, ...], float]:
+    """Which corners share an x and which a y because a wall between them runs along an axis.
+
+    Args:
+        corners: (N, 2) metres; pixels: the same in the picture, for the length of walls as seen.
+        degrees: largest angle to the axis; for short walls an offset of `slack_px` counts too, up to 6 degrees.
+
+    Returns:
+        link_x, link_y as `Problem` wants them, and the part of the outline's length that runs along an axis.
+    """
+    count = len(corners)
+    link_x, link_y = list(range(count)), list(range(count))
+    total = along = 0.0
+    for i in range(count):
+        j = (i + 1) % count
+        step = corners[j] - corners[i]
+        length = float(np.hypot(*step))
+        seen = float(np.hypot(*(pixels[j] - pixels[i])))
+        limit = max(degrees, min(6.0, math.degrees(slack_px / max(1e-6, seen))))
+        total += length
+        for axis, link in ((0, link_x), (1, link_y)):
+            if abs(step[axis]) <= math.sin(math.radians(limit)) * length:
+                along += length
+                low, high = sorted((link[i], link[j]))
+                link[:] = [low if v == high else v for v in link]
+    return _compact(link_x), _compact(link_y), along / total if total > 0 else 0.0
+
+
+def _compact(link: list[int]) -> tuple[int, ...]:
+    numbers = {value: k for k, value in enumerate(sorted(set(link)))}
+    return tuple(numbers[value] for value in link)

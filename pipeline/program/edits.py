@@ -1,0 +1,210 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Typed edits of a layout. What cannot be done is reported in a plain sentence and changes nothing."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+from ..artifacts.analysis import Finding
+from ..artifacts.layout import Layout, LayoutEdit, ProxyLine
+from .lines import checked_fields, rounded_line
+from .prelude.recorder import MOST_LINES, Recorder
+
+
+class _Unusable(Exception):
+    """Why an edit cannot be done."""
+
+
+@dataclass
+class Edited:
+    """A layout after edits, and what happened.
+
+    Attributes:
+        proxies: the proxies as they are now.
+        others: ids that are taken by other lines; fixed: those of them that may be parents.
+        before: the proxies' ids before the edits.
+        origins: for each proxy id of now, the id it had before the edits, or None when it was added.
+        findings: unusable edits and side effects.
+    """
+
+    proxies: list[ProxyLine]
+    others: set[str]
+    fixed: set[str]
+    before: set[str]
+    origins: dict[str, str | None] = field(default_factory=dict)
+    findings: list[Finding] = field(default_factory=list)
+
+    def index(self, identifier: str) -> int:
+        """Where the proxy with this id is. Raises _Unusable when there is none."""
+        for index, proxy in enumerate(self.proxies):
+            if proxy.id == identifier:
+                return index
+        raise _Unusable(f"there is no object {identifier!r}")
+
+    def change(self, identifier: str, **values: Any) -> None:
+        """Set fields of a proxy, checked as the program's line is when it runs."""
+        index = self.index(identifier)
+        self.proxies[index] = _checked(self.proxies[index].model_copy(update=values))
+
+    def note(self, edit: LayoutEdit, message: str, severity: Any = "note") -> None:
+        """Report something about an edit."""
+        self.findings.append(Finding(about=edit.id, message=message, severity=severity))
+
+
+def apply_edits(layout: Layout, edits: list[LayoutEdit]) -> tuple[Layout, list[Finding]]:
+    """The layout after the edits, one after the other; unusable ones are reported and left out.
+
+    - `move` sets the centre, `turn` the yaw, of this object alone. `resize` keeps the base of what stands and the top
+      of what hangs where it is, unless the edit gives a centre too.
+    - `add` needs category, centre and size; a new object comes after the last one of its salience.
+    - `remove` gives the object's children to its own parent. `rename` follows into its children.
+    - `reparent` sets the placement, where given, and the parent (None: no parent).
+
+    Numbers of changed lines are rounded as they are printed. The layout that is given is not changed.
+    """
+    edited = edit_proxies(layout, edits)
+    result = layout.model_copy(deep=True)
+    result.proxies = edited.proxies
+    return result, edited.findings
+
+
+def edit_proxies(layout: Layout, edits: list[LayoutEdit]) -> Edited:
+    """As `apply_edits`, with the ids before and after."""
+    fixed = {line.id for line in layout.walls} | {line.id for line in layout.doors}
+    fixed |= {line.id for line in layout.windows} | {line.id for line in layout.openings}
+    others = fixed | {line.id for line in layout.lights} | {line.id for line in layout.cameras}
+    state = Edited([p.model_copy() for p in layout.proxies], others, fixed, {p.id for p in layout.proxies})
+    state.origins = {p.id: p.id for p in state.proxies}
+    for edit in edits:
+        try:
+            if edit.op != "add":
+                state.index(edit.id)
+            _OPERATIONS[edit.op](state, edit)
+        except _Unusable as problem:
+            state.note(edit, f"The edit {edit.op!r} of {edit.id!r} was left out: {problem}.", "warning")
+    return state
+
+
+def _move(state: Edited, edit: LayoutEdit) -> None:
+    state.change(edit.id, centre=_given(edit, "centre"))
+
+
+def _resize(state: Edited, edit: LayoutEdit) -> None:
+    size = _given(edit, "size")
+    proxy = state.proxies[state.index(edit.id)]
+    x, y, z = proxy.centre
+    rise = (size[2] - proxy.size[2]) / 2
+    z += {"floor": rise, "surface": rise, "ceiling": -rise, "wall": 0.0}[proxy.placement]
+    state.change(edit.id, size=size, centre=edit.centre or (x, y, z))
+
+
+def _turn(state: Edited, edit: LayoutEdit) -> None:
+    state.change(edit.id, yaw=_given(edit, "yaw"))
+
+
+def _recategorise(state: Edited, edit: LayoutEdit) -> None:
+    values = {"category": _given(edit, "category")}
+    if edit.label is not None:
+        values["label"] = edit.label
+    state.change(edit.id, **values)
+
+
+def _add(state: Edited, edit: LayoutEdit) -> None:
+    _free(state, edit.id)
+    _known_parent(state, edit.id, edit.parent)
+    if len(state.proxies) + len(state.others) >= MOST_LINES:
+        raise _Unusable(f"a room has at most {MOST_LINES} layout lines")
+    centre, size, category = (_given(edit, name) for name in ("centre", "size", "category"))
+    proxy = ProxyLine(id=edit.id, category=category, centre=centre, size=size, yaw=edit.yaw or 0.0, parent=edit.parent)
+    proxy.placement = edit.placement or ("floor" if edit.parent is None else "surface")
+    proxy.salience, proxy.label = edit.salience or "major", edit.label or ""
+    state.proxies.insert(place_for(state.proxies, proxy), _checked(proxy))
+    state.origins[edit.id] = None
+
+
+def place_for(proxies: list[ProxyLine], proxy: ProxyLine) -> int:
+    """Where a new proxy goes: after the last of its salience; else majors first, minors last."""
+    same = [index for index, other in enumerate(proxies) if other.salience == proxy.salience]
+    return same[-1] + 1 if same else 0 if proxy.salience == "major" else len(proxies)
+
+
+def _remove(state: Edited, edit: LayoutEdit) -> None:
+    gone = state.proxies.pop(state.index(edit.id))
+    del state.origins[gone.id]
+    for proxy in list(state.proxies):
+        if proxy.parent == gone.id:
+            state.change(proxy.id, parent=gone.parent)
+            to = f"now belongs to {gone.parent!r}" if gone.parent else "now has no parent"
+            state.note(edit, f"{proxy.id!r} stood on {gone.id!r}, which was removed; it {to}.")
+
+
+def _rename(state: Edited, edit: LayoutEdit) -> None:
+    new = _given(edit, "new_id")
+    if new == edit.id:
+        return
+    _free(state, new)
+    state.change(edit.id, id=new)
+    state.origins[new] = state.origins.pop(edit.id)
+    for proxy in list(state.proxies):
+        if proxy.parent == edit.id:
+            state.change(proxy.id, parent=new)
+
+
+def _reparent(state: Edited, edit: LayoutEdit) -> None:
+    if edit.placement is None and edit.parent is None:
+        raise _Unusable("it gives neither a placement nor a parent")
+    _known_parent(state, edit.id, edit.parent)
+    values: dict[str, Any] = {"parent": edit.parent}
+    if edit.placement is not None:
+        values["placement"] = edit.placement
+    state.change(edit.id, **values)
+
+
+_OPERATIONS = {
+    "move": _move,
+    "resize": _resize,
+    "turn": _turn,
+    "add": _add,
+    "remove": _remove,
+    "recategorise": _recategorise,
+    "rename": _rename,
+    "reparent": _reparent,
+}
+
+
+def _given(edit: LayoutEdit, name: str) -> Any:
+    value = getattr(edit, name)
+    if value is None:
+        raise _Unusable(f"it gives no {name}")
+    return value
+
+
+def _free(state: Edited, identifier: str) -> None:
+    if identifier in state.origins or identifier in state.others:
+        raise _Unusable(f"the id {identifier!r} is taken")
+
+
+def _known_parent(state: Edited, identifier: str, parent: str | None) -> None:
+    parents = {proxy.id: proxy.parent for proxy in state.proxies}
+    if parent is not None and parent not in parents and parent not in state.fixed:
+        raise _Unusable(f"the parent {parent!r} does not exist")
+    at = parent
+    for _ in range(len(parents) + 1):
+        if at == identifier:
+            raise _Unusable("the parents would run in a circle")
+        at = parents.get(at) if at is not None else None
+
+
+def _checked(proxy: ProxyLine) -> ProxyLine:
+    """The proxy with rounded numbers, if its line would be accepted when the program runs."""
+    if not all(math.isfinite(value) for value in (*proxy.centre, *proxy.size, proxy.yaw)):
+        raise _Unusable("all numbers must be finite")
+    line = rounded_line(proxy)
+    try:
+        checked_fields(Recorder(), "proxy", [], line.model_dump())
+    except ValueError as error:
+        raise _Unusable(str(error)) from None
+    assert isinstance(line, ProxyLine)
+    return line

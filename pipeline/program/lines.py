@@ -1,0 +1,304 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Layout lines as text: `print_layout` writes them, `parse_layout` reads them, and the two are inverse.
+
+Printed numbers are rounded to `DECIMALS` places (0.1 mm, 0.0001 degrees), those of a camera's matrix and field of view
+to `FINE_DECIMALS`; `canonical` does the same to typed lines, so that `parse_layout(print_layout(x)) == canonical(x)`.
+"""
+
+from __future__ import annotations
+
+import ast
+from dataclasses import dataclass
+from typing import Any
+
+from pydantic import ValidationError
+
+from ..artifacts.layout import (
+    CameraLine,
+    DoorLine,
+    Layout,
+    LightLine,
+    Line,
+    OpeningLine,
+    ProxyLine,
+    RoomLine,
+    WallLine,
+    WindowLine,
+)
+from ..errors import ProgramError
+from .prelude.recorder import Recorder
+
+DECIMALS = 4
+FINE_DECIMALS = 9
+WIDTH = 140
+MOST_BYTES = 4_000_000
+
+LINE_TYPES: dict[str, type[Line]] = {
+    "room": RoomLine,
+    "wall": WallLine,
+    "door": DoorLine,
+    "window": WindowLine,
+    "opening": OpeningLine,
+    "proxy": ProxyLine,
+    "light": LightLine,
+    "camera": CameraLine,
+}
+"""The type of each layout line by the name it is called by."""
+
+_LISTS = {
+    "wall": "walls",
+    "door": "doors",
+    "window": "windows",
+    "opening": "openings",
+    "proxy": "proxies",
+    "light": "lights",
+    "camera": "cameras",
+}
+_POSITIONAL = {"room": 0, "wall": 3, "door": 1, "window": 1, "opening": 1, "proxy": 2, "light": 2, "camera": 2}
+_FINE = {"matrix", "fov_y", "ortho_height"}
+# Fields that are printed only when they differ from their default; all others are always printed.
+_QUIET = {"partition", "parent", "label", "shape", "color", "target", "fov_y", "ortho_height", "principal"}
+
+
+@dataclass(frozen=True)
+class Statement:
+    """A layout line of a text and where it stands.
+
+    Attributes:
+        name: what is called ("proxy").
+        line: the typed line.
+        node: its place: 1-based `lineno`, `end_lineno`, and `col_offset`, `end_col_offset` in UTF-8 bytes.
+    """
+
+    name: str
+    line: Line
+    node: ast.Expr
+
+
+# ---- print ----
+
+
+def canonical(layout: Layout) -> Layout:
+    """The layout as it is printed: numbers rounded, major objects before minor ones."""
+    result = Layout(room=_round_line(layout.room))
+    for key in _LISTS.values():
+        setattr(result, key, [_round_line(line) for line in getattr(layout, key)])
+    result.proxies = sorted(result.proxies, key=lambda proxy: proxy.salience != "major")
+    return result
+
+
+def print_layout(layout: Layout) -> str:
+    """The room text of a layout: sections with comments, one statement a line, `build()` at the end."""
+    majors = [proxy for proxy in layout.proxies if proxy.salience == "major"]
+    minors = [proxy for proxy in layout.proxies if proxy.salience != "major"]
+    sections: list[tuple[str, list[Line]]] = [
+        ("Shell", [layout.room, *layout.walls]),
+        ("Doors, windows and openings", [*layout.doors, *layout.windows, *layout.openings]),
+        ("Major objects", [*majors]),
+        ("Minor objects", [*minors]),
+        ("Lights", [*layout.lights]),
+        ("Cameras", [*layout.cameras]),
+    ]
+    blocks = [
+        "\n".join([f"# {title}", *(print_line(line) for line in lines)]) + "\n" for title, lines in sections if lines
+    ]
+    return "\n".join([*blocks, "build()\n"])
+
+
+def print_line(line: Line) -> str:
+    """One layout line as a statement, wrapped at `WIDTH` characters where it is longer."""
+    name = name_of(line)
+    pieces: list[str] = []
+    for index, (key, field) in enumerate(type(line).model_fields.items()):
+        value = getattr(line, key)
+        if key in _QUIET and value == field.default:
+            continue
+        prefix = "" if index < _POSITIONAL[name] else f"{key}="
+        pieces.extend(_value_pieces(prefix, value, FINE_DECIMALS if key in _FINE else DECIMALS))
+        pieces[-1] += ","
+    pieces[-1] = pieces[-1][:-1] + ")"
+    return _fill(f"{name}(", pieces)
+
+
+def name_of(line: Line) -> str:
+    """What a typed line is called by in the text."""
+    return next(name for name, kind in LINE_TYPES.items() if isinstance(line, kind))
+
+
+def _value_pieces(prefix: str, value: Any, decimals: int) -> list[str]:
+    """The literal in pieces between which a line may be broken."""
+    if isinstance(value, list):
+        inner = [f"{_literal(item, decimals)}," for item in value] or [""]
+        inner[0] = f"{prefix}[{inner[0]}"
+        inner[-1] = inner[-1].removesuffix(",") + "]"
+        return inner
+    if isinstance(value, tuple) and len(value) > 4:
+        return [
+            f"{prefix if i == 0 else ''}{'(' if i == 0 else ''}{_literal(item, decimals)}"
+            + (")" if i == len(value) - 1 else ",")
+            for i, item in enumerate(value)
+        ]
+    return [prefix + _literal(value, decimals)]
+
+
+def _literal(value: Any, decimals: int) -> str:
+    if value is None or isinstance(value, bool):
+        return str(value)
+    if isinstance(value, str):
+        return quoted(value)
+    if isinstance(value, tuple):
+        return "(" + ", ".join(_literal(item, decimals) for item in value) + ")"
+    return _number(value, decimals)
+
+
+def _number(value: float, decimals: int) -> str:
+    rounded = round(value, decimals)
+    return repr(rounded).removesuffix(".0") if rounded else "0"
+
+
+def quoted(text: str) -> str:
+    """A string literal in double quotes; whatever is not printable is written as an escape."""
+    short = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\r": "\\r", "\t": "\\t"}
+    return '"' + "".join(short.get(c) or (c if c.isprintable() else _escape(ord(c))) for c in text) + '"'
+
+
+def _escape(code: int) -> str:
+    return f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
+
+
+def _fill(start: str, pieces: list[str]) -> str:
+    lines, current = [], start + pieces[0]
+    for piece in pieces[1:]:
+        if len(current) + 1 + len(piece) > WIDTH:
+            lines.append(current)
+            current = "    " + piece
+        else:
+            current += " " + piece
+    return "\n".join([*lines, current])
+
+
+def _round_line(line: Any) -> Any:
+    values = {key: getattr(line, key) for key in type(line).model_fields}
+    return type(line)(**{key: _rounded(v, FINE_DECIMALS if key in _FINE else DECIMALS) for key, v in values.items()})
+
+
+def _rounded(value: Any, decimals: int) -> Any:
+    if isinstance(value, float):
+        return round(value, decimals) + 0.0
+    if isinstance(value, (tuple, list)):
+        return type(value)(_rounded(item, decimals) for item in value)
+    return value
+
+
+def rounded_line(line: Line) -> Line:
+    """The line with its numbers as they are printed."""
+    result: Line = _round_line(line)
+    return result
+
+
+# ---- parse ----
+
+
+def parse_layout(text: str) -> Layout:
+    """The layout lines of a room text (what follows the marker), in their order; everything else is passed over.
+
+    Raises:
+        ProgramError: the text is not Python, a layout line is not a plain statement with literal arguments, or one
+            says something that no room can have. It names the line.
+    """
+    return layout_of(layout_statements(parse_tree(text)))
+
+
+def layout_of(statements: list[Statement]) -> Layout:
+    """The typed lines of these statements. Raises ProgramError when there is no room line."""
+    rooms = [s.line for s in statements if isinstance(s.line, RoomLine)]
+    if not rooms:
+        raise ProgramError("the room line is missing", 0, "Begin with room(size=(w, d, h), floor=[(x, y), ...]).")
+    lists: dict[str, list[Line]] = {key: [] for key in _LISTS.values()}
+    for statement in statements:
+        if statement.name != "room":
+            lists[_LISTS[statement.name]].append(statement.line)
+    return Layout.model_validate({"room": rooms[0], **lists})
+
+
+def parse_tree(text: str) -> ast.Module:
+    """The syntax tree of a room text. Raises ProgramError with the line."""
+    if len(text) > MOST_BYTES:
+        raise ProgramError("the program is too long")
+    try:
+        return ast.parse(text)
+    except SyntaxError as error:
+        raise ProgramError(f"this is not valid Python: {error.msg}", error.lineno or 0) from None
+    except (ValueError, RecursionError, MemoryError):
+        raise ProgramError("the program cannot be read: it is nested too deeply or holds a null character") from None
+
+
+def layout_statements(tree: ast.Module) -> list[Statement]:
+    """The layout lines of a program, each checked as it would be when the program runs."""
+    recorder = Recorder()
+    statements = []
+    plain: set[int] = set()
+    for node in tree.body:
+        name = called_name(node)
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Call) and name in LINE_TYPES:
+            plain.add(id(node.value))
+            statements.append(_statement(recorder, name, node, node.value))
+    for inner in ast.walk(tree):
+        if not isinstance(inner, ast.Call) or not isinstance(inner.func, ast.Name) or id(inner) in plain:
+            continue
+        if inner.func.id in LINE_TYPES:
+            raise ProgramError(
+                f"{inner.func.id}(...) is a layout line: write each as a statement of its own at the left margin, "
+                "not in a loop, a function or an expression",
+                inner.lineno,
+            )
+    return statements
+
+
+def called_name(node: ast.stmt) -> str:
+    """The name that a statement calls, "" when it is not a plain call."""
+    if isinstance(node, ast.Expr) and isinstance(node.value, ast.Call) and isinstance(node.value.func, ast.Name):
+        return node.value.func.id
+    return ""
+
+
+def _statement(recorder: Recorder, name: str, node: ast.Expr, call: ast.Call) -> Statement:
+    if any(isinstance(arg, ast.Starred) for arg in call.args) or any(k.arg is None for k in call.keywords):
+        raise ProgramError(f"{name}: write every argument out, without * or **", node.lineno)
+    arguments = [literal_of(arg) for arg in call.args]
+    keywords = {str(k.arg): literal_of(k.value) for k in call.keywords}
+    try:
+        fields = checked_fields(recorder, name, arguments, keywords)
+        return Statement(name, LINE_TYPES[name].model_validate(fields), node)
+    except TypeError as error:
+        raise ProgramError(str(error).replace("Recorder.", ""), node.lineno) from None
+    except ValidationError as error:
+        first = error.errors()[0]
+        place = ".".join(str(part) for part in first["loc"])
+        raise ProgramError(f"{name}: {place}: {first['msg']}", node.lineno) from None
+    except ValueError as error:
+        raise ProgramError(str(error), node.lineno) from None
+
+
+def checked_fields(recorder: Recorder, name: str, arguments: list[Any], keywords: dict[str, Any]) -> dict[str, Any]:
+    """The fields of one layout line with defaults filled in. Raises ValueError or TypeError as the program would."""
+    getattr(recorder, name)(*arguments, **keywords)
+    if name == "room":
+        return recorder.record.room or {}
+    found: dict[str, Any] = getattr(recorder.record, _LISTS[name])[-1]
+    return found
+
+
+def literal_of(node: ast.expr) -> Any:
+    """The value of a literal: numbers, strings, True, False, None, tuples and lists of these."""
+    if isinstance(node, ast.Constant) and (node.value is None or isinstance(node.value, (bool, int, float, str))):
+        return node.value
+    if isinstance(node, ast.Tuple):
+        return tuple(literal_of(item) for item in node.elts)
+    if isinstance(node, ast.List):
+        return [literal_of(item) for item in node.elts]
+    if isinstance(node, ast.UnaryOp) and isinstance(node.op, (ast.USub, ast.UAdd)):
+        value = literal_of(node.operand)
+        if isinstance(value, (int, float)) and not isinstance(value, bool):
+            return -value if isinstance(node.op, ast.USub) else value
+    raise ProgramError("layout lines take literal values only: numbers, texts, tuples and lists", node.lineno)

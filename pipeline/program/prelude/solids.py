@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Closed solids. All lengths in metres; `at` is the solid's centre; faces run counter-clockwise seen from outside."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from .budget import spend_vertices
+from .checks import fail, is_number, number, positive, sizes, whole
+from .rings import Faces, along, circle, placed, revolve, skin
+from .shape import Shape
+
+MOST_SEGMENTS = 512
+ORIGIN = (0.0, 0.0, 0.0)
+BOX_CORNERS = np.array([(x, y, z) for z in (-1, 1) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
+BOX_FACES: Faces = [(3, 2, 1, 0), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]
+
+
+def box(size: Any, at: Any = ORIGIN) -> Shape:
+    """A box of `size` (width along x, depth along y, height along z)."""
+    half = np.array(sizes("box", "size", size)) / 2
+    spend_vertices(8)
+    return placed("box", BOX_CORNERS * half, BOX_FACES, at)
+
+
+def rounded_box(size: Any, radius: Any = 0.02, at: Any = ORIGIN, segments: Any = 3) -> Shape:
+    """A box with rounded edges and corners; `segments=1` bevels them instead.
+
+    The radius is cut to a little under half of the smallest side.
+    """
+    half = np.array(sizes("rounded_box", "size", size)) / 2
+    bend = min(positive("rounded_box", "radius", radius), 0.98 * float(half.min()))
+    steps = whole("rounded_box", "segments", segments, 1, 32)
+    columns = 4 * (steps + 1)
+    spend_vertices(2 * steps * columns + 8)
+    inner = half - bend
+    quarters = [(1, 1), (-1, 1), (-1, -1), (1, -1)]
+    around = [(q, math.pi / 2 * (q + i / steps)) for q in range(4) for i in range(steps + 1)]
+    points = [np.array([(x * inner[0], y * inner[1], -half[2]) for x, y in quarters])]
+    tilts = [math.pi / 2 * i / steps for i in range(steps + 1)]
+    levels = [(-1, tilt) for tilt in reversed(tilts[:-1])] + [(1, tilt) for tilt in tilts[:-1]]
+    for side, tilt in levels:
+        flat, rise = bend * math.cos(tilt), side * (inner[2] + bend * math.sin(tilt))
+        ring = [(quarters[q][0] * inner[0] + flat * math.cos(a), quarters[q][1] * inner[1] + flat * math.sin(a), rise)
+                for q, a in around]  # fmt: skip
+        points.append(np.array(ring))
+    points.append(points[0] * (1, 1, -1))
+    _, faces = skin(points[1:-1])
+    faces = [tuple(i + 4 for i in face) for face in faces[:-2]]
+    last = 4 + len(levels) * columns
+    faces += rounded_ends(steps, columns, last)
+    return placed("rounded_box", np.concatenate(points), faces, at, smooth=steps > 1)
+
+
+def rounded_ends(steps: int, columns: int, last: int) -> list[tuple[int, ...]]:
+    """Bottom and top of a rounded box: the flat face, four strips and four corner fans at each end.
+
+    The bottom's four vertices come first; then rings of `columns`; the top's four start at `last`.
+    """
+    faces: list[tuple[int, ...]] = [(3, 2, 1, 0), (last, last + 1, last + 2, last + 3)]
+    top_ring = last - columns
+    for i in range(columns):
+        j = (i + 1) % columns
+        q, r = i // (steps + 1), j // (steps + 1)
+        if q == r:
+            faces += [(q, 4 + j, 4 + i), (top_ring + i, top_ring + j, last + q)]
+        else:
+            faces += [(q, r, 4 + j, 4 + i), (top_ring + i, top_ring + j, last + r, last + q)]
+    return faces
+
+
+def cylinder(radius: Any, height: Any, at: Any = ORIGIN, segments: Any = 24, axis: Any = "z") -> Shape:
+    """A cylinder along the axis."""
+    return frustum("cylinder", positive("cylinder", "radius", radius), None, height, at, segments, axis)
+
+
+def cone(
+    radius: Any, height: Any, top_radius: Any = 0.0, at: Any = ORIGIN, segments: Any = 24, axis: Any = "z"
+) -> Shape:
+    """A cone, or a truncated cone where `top_radius` is not 0; the top lies toward the positive axis."""
+    bottom, top = number("cone", "radius", radius, 0.0), number("cone", "top_radius", top_radius, 0.0)
+    if bottom == 0 and top == 0:
+        raise fail("cone", "radius and top_radius must not both be 0")
+    return frustum("cone", bottom, top, height, at, segments, axis)
+
+
+def frustum(where: str, bottom: float, top: float | None, height: Any, at: Any, segments: Any, axis: Any) -> Shape:
+    """What cylinder and cone share; a top of None is as wide as the bottom."""
+    half = positive(where, "height", height) / 2
+    count = whole(where, "segments", segments, 3, MOST_SEGMENTS)
+    vertices, faces = revolve([(bottom, -half), (bottom if top is None else top, half)], count)
+    return placed(where, along(where, vertices, axis), faces, at, smooth=True)
+
+
+def prism(sides: Any, radius: Any, height: Any, at: Any = ORIGIN, axis: Any = "z") -> Shape:
+    """A straight prism on a regular polygon of `sides` corners, `radius` from the middle to a corner."""
+    count = whole("prism", "sides", sides, 3, MOST_SEGMENTS)
+    half, across = positive("prism", "height", height) / 2, positive("prism", "radius", radius)
+    vertices, faces = revolve([(across, -half), (across, half)], count)
+    return placed("prism", along("prism", vertices, axis), faces, at)
+
+
+def sphere(radius: Any, at: Any = ORIGIN, segments: Any = 24, rings: Any = 12) -> Shape:
+    """A sphere, or an ellipsoid where the radius is (along x, along y, along z)."""
+    if is_number(radius):
+        radius = (radius, radius, radius)
+    radii = np.array(sizes("sphere", "radius", radius))
+    columns, rows = whole("sphere", "segments", segments, 3, MOST_SEGMENTS), whole("sphere", "rings", rings, 2, 256)
+    arc = [(math.sin(math.pi * i / rows), -math.cos(math.pi * i / rows)) for i in range(1, rows)]
+    vertices, faces = revolve([(0.0, -1.0), *arc, (0.0, 1.0)], columns)
+    return placed("sphere", vertices * radii, faces, at, smooth=True)
+
+
+def capsule(radius: Any, height: Any, at: Any = ORIGIN, segments: Any = 24, rings: Any = 6, axis: Any = "z") -> Shape:
+    """A cylinder with half-round ends; `height` is over all and at least twice the radius."""
+    bend, whole_height = positive("capsule", "radius", radius), positive("capsule", "height", height)
+    if whole_height < 2 * bend:
+        raise fail("capsule", "height is over all and must be at least twice the radius")
+    columns, rows = whole("capsule", "segments", segments, 3, MOST_SEGMENTS), whole("capsule", "rings", rings, 1, 128)
+    straight = max(whole_height / 2 - bend, 1e-6)
+    arc = [(bend * math.cos(math.pi / 2 * i / rows), bend * math.sin(math.pi / 2 * i / rows)) for i in range(rows)]
+    upper = [(r, straight + z) for r, z in arc] + [(0.0, straight + bend)]
+    vertices, faces = revolve([(r, -z) for r, z in reversed(upper)] + upper, columns)
+    return placed("capsule", along("capsule", vertices, axis), faces, at, smooth=True)
+
+
+def torus(
+    radius: Any, thickness: Any, at: Any = ORIGIN, segments: Any = 32, rings: Any = 12, axis: Any = "z"
+) -> Shape:
+    """A ring: `radius` to the middle of the tube, `thickness` the tube's own radius, smaller than `radius`."""
+    middle, bend = positive("torus", "radius", radius), positive("torus", "thickness", thickness)
+    if bend >= middle:
+        raise fail("torus", "thickness, the tube's own radius, must be smaller than radius")
+    columns, rows = whole("torus", "segments", segments, 3, MOST_SEGMENTS), whole("torus", "rings", rings, 3, 256)
+    profile = [(middle + bend * x, bend * z) for x, z, _ in circle(rows).tolist()]
+    vertices, faces = revolve(profile, columns, loop=True)
+    return placed("torus", along("torus", vertices, axis), faces, at, smooth=True)

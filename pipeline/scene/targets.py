@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which objects a `Record` asks for, and where: plain data, before Blender is touched."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ..program.prelude.palette import category_family
+from ..program.prelude.proxies import proxy_shapes
+from ..program.prelude.record import Record
+from ..program.prelude.shape import Shape
+from ..program.prelude.shell import shell_pieces
+
+
+@dataclass(frozen=True)
+class Target:
+    """One object that should stand in the scene.
+
+    Attributes:
+        key: (id, part).
+        role: which sub-collection it belongs to.
+        line: the proxy, light or camera line, else {}.
+        matrix: object-to-room matrix.
+        parent: id of what it follows, or None.
+        fields: plain values that are kept on the object, so that the scene can be read without the program.
+    """
+
+    key: tuple[str, str]
+    kind: str
+    role: str
+    matrix: Any
+    shapes: list[Shape] = field(default_factory=list)
+    family: str = ""
+    parent: str | None = None
+    line: dict[str, Any] = field(default_factory=dict)
+    fields: dict[str, Any] = field(default_factory=dict)
+
+
+def record_targets(record: Record) -> tuple[list[Target], list[str]]:
+    """The objects that a record asks for, in its order, and the notes on its shell."""
+    pieces, notes = shell_pieces(record)
+    lines = {
+        line["id"]: line for group in (record.walls, record.doors, record.windows, record.openings) for line in group
+    }
+    targets = []
+    for piece in pieces:
+        fields = {"wall": piece.parent or ""} if piece.kind in ("door", "window", "opening") else {}
+        matrix = placed(piece.origin, piece.yaw)
+        targets.append(
+            Target((piece.id, piece.part), piece.kind, "shell", matrix, piece.shapes, "", piece.parent,
+                   lines.get(piece.id, {}), fields)
+        )  # fmt: skip
+    targets += [_proxy_target(line, record.furnished.get(line["id"])) for line in record.proxies]
+    for light in record.lights:
+        targets.append(Target((light["id"], ""), "light", "lights", aimed(light["at"], light["target"]), line=light))
+    for camera in record.cameras:
+        rows = np.array(camera["matrix"], dtype=float).reshape(4, 4)
+        targets.append(Target((camera["id"], ""), "camera", "cameras", rows, line=camera))
+    return targets, notes
+
+
+def _proxy_target(line: dict[str, Any], furnished: list[Shape] | None) -> Target:
+    """The proxy's box, or what the program furnished it with."""
+    x, y, z = line["centre"]
+    matrix = placed((x, y, z - line["size"][2] / 2), line["yaw"])
+    shapes = proxy_shapes(line) if furnished is None else furnished
+    names = ("category", "label", "placement", "parent", "salience", "shape")
+    fields = {name: line[name] if line[name] is not None else "" for name in names}
+    fields["furnished"] = furnished is not None
+    family = category_family(line["category"])
+    return Target((line["id"], ""), "proxy", "layout", matrix, shapes, family, line["parent"], line, fields)
+
+
+def placed(origin: tuple[float, float, float], yaw: float) -> Any:
+    """The 4 x 4 matrix that turns by yaw degrees about z and moves to the origin."""
+    c, s = math.cos(math.radians(yaw)), math.sin(math.radians(yaw))
+    x, y, z = origin
+    return np.array([[c, -s, 0, x], [s, c, 0, y], [0, 0, 1, z], [0, 0, 0, 1]], dtype=float)
+
+
+def aimed(at: tuple[float, float, float], target: tuple[float, float, float] | None) -> Any:
+    """The matrix of a lamp at a place that shines along its -Z towards the target, straight down without one."""
+    matrix = np.eye(4)
+    matrix[:3, 3] = at
+    if target is None:
+        return matrix
+    back = np.array(at, dtype=float) - np.array(target, dtype=float)
+    length = float(np.linalg.norm(back))
+    if length < 1e-9:
+        return matrix
+    back /= length
+    side = np.cross((0.0, 1.0, 0.0) if abs(back[2]) > 0.999 else (0.0, 0.0, 1.0), back)
+    side /= np.linalg.norm(side)
+    matrix[:3, 0], matrix[:3, 1], matrix[:3, 2] = side, np.cross(back, side), back
+    return matrix
+
+
+def parents_first(targets: list[Target]) -> list[Target]:
+    """The same targets in an order in which every parent comes before its children; circles are cut."""
+    owners = {target.key[0]: target for target in targets if not target.key[1]}
+    ordered: dict[tuple[str, str], Target] = {}
+
+    def add(target: Target, above: tuple[str, ...]) -> None:
+        parent = owners.get(target.parent or "")
+        if parent is not None and parent is not target and parent.key not in ordered and parent.key[0] not in above:
+            add(parent, (*above, target.key[0]))
+        ordered.setdefault(target.key, target)
+
+    for target in targets:
+        add(target, ())
+    return list(ordered.values())
+
+
+def target_digest(target: Target) -> str:
+    """A digest of everything that a target asks for."""
+    shapes = shapes_digest(target.shapes, target.family)
+    numbers = np.round(np.array(target.matrix, dtype=float), 7).tolist()
+    parts = (target.kind, numbers, target.parent, sorted(target.line.items(), key=lambda item: item[0]), target.fields)
+    return hashlib.sha1((shapes + repr(parts)).encode(), usedforsecurity=False).hexdigest()[:20]
+
+
+def shapes_digest(shapes: list[Shape], family: str) -> str:
+    """A short digest of everything that a mesh made from these shapes would hold."""
+    digest = hashlib.sha1(family.encode(), usedforsecurity=False)
+    for shape in shapes:
+        digest.update(np.ascontiguousarray(shape.vertices, dtype=np.float64).tobytes())
+        digest.update(repr((shape.faces, shape.part, shape.material, shape.smooth, shape.extra)).encode())
+        if shape.uvs is not None:
+            digest.update(np.ascontiguousarray(shape.uvs, dtype=np.float64).tobytes())
+    return digest.hexdigest()[:20]
