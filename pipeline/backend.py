@@ -3,10 +3,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Protocol
 
 from .artifacts.camera import CameraModel
 from .artifacts.layout import LayoutEdit
+from .artifacts.scene import SceneDocument
 
 
 class SceneBackend(Protocol):
@@ -38,4 +40,16 @@ class SceneBackend(Protocol):
 
     def program_text(self) -> str:
         """The room program (text after the prelude) that the scene shows, "" when there is none."""
+        ...
+
+    def render_view(self, long_side: int) -> bytes:
+        """PNG of the room from a raised corner, near walls hidden."""
+        ...
+
+    def scene_document(self, image: str, camera: CameraModel) -> SceneDocument:
+        """`scene.json` of what stands in the scene (not of what the program asked for)."""
+        ...
+
+    def save_copy(self, path: Path) -> None:
+        """Save a copy of the .blend, everything packed, without changing the artist's file."""
         ...

@@ -45,6 +45,7 @@ ASSUMED_FOCAL = 1.4  # of the picture's longer side: about 39 degrees, an ordina
 CORNER_NOISE = 0.003  # of the picture's longer side: how far off corners are expected to be
 FLAT, DEEP = 1.01, 1.05  # wall tops larger than the floor by less: orthographic; by more: perspective
 SQUARE_DEGREES = 1.5
+MAX_ROLL = 15.0  # a room that seems turned further has slanted walls instead
 SQUARE_SHARE = 0.6  # part of the outline along the axes from which a room counts as right-angled
 HeightSource = Literal["given", "measured", "assumed"]
 
@@ -298,12 +299,37 @@ def _solve_kind(
     setup: _Setup, kind: Kind, known: Floats | None, width: float | None, depth: float | None
 ) -> tuple[Problem, Floats]:
     problem = _first_problem(setup, kind, known, width, depth)
-    candidates = [problem.solve(problem.start(camera)) for camera in _start_cameras(setup, problem)]
-    x = min(candidates, key=lambda c: c[1])[0]
+    x = _best_start(setup, problem)
+    if known is None and not _right_angled(setup, problem, x):
+        # Nothing says which way such a room is turned: the picture's axes are the room's, and right angles are no cue.
+        x[ROLL] = 0.0
+        problem = replace(
+            problem, assumed=replace(problem.assumed, square=math.inf), frozen=problem.frozen | {ROLL, *_tilt(setup)}
+        )
+        x = _best_start(setup, problem)
+        return _simplified(setup, *_with_measured_noise(problem, x))
     problem, x = _with_measured_noise(problem, x)
     if known is None:
         problem, x = _squared(setup, problem, x)
     return _simplified(setup, problem, x)
+
+
+def _tilt(setup: _Setup) -> set[int]:
+    """Tilt is left out where nothing shows it."""
+    return {TILT_X, TILT_Y} if setup.tops is None else set()
+
+
+def _best_start(setup: _Setup, problem: Problem) -> Floats:
+    """Best solution from all starts: a few steps from each, the rest from the most promising."""
+    starts = [problem.start(camera) for camera in _start_cameras(setup, problem)]
+    if len(starts) > 1:
+        starts = [min((problem.solve(start, 12) for start in starts), key=lambda s: s[1])[0]]
+    return problem.solve(starts[0])[0]
+
+
+def _right_angled(setup: _Setup, problem: Problem, x: Floats) -> bool:
+    share = square_links(problem.corners(x), setup.floor, 2 * SQUARE_DEGREES, 1.5 * setup.noise)[2]
+    return share >= SQUARE_SHARE and abs(float(x[ROLL])) <= MAX_ROLL
 
 
 def _first_problem(
@@ -323,8 +349,8 @@ def _first_problem(
     frozen: set[int] = set()
     if bare:
         frozen.add(HEIGHT)
-        if not perspective and known is None:
-            frozen |= {TILT_X, TILT_Y}
+        if not perspective:
+            frozen |= {TILT_X, TILT_Y}  # foreshortening would not tell which way it is tilted
     link = tuple(range(len(setup.floor)))
     return Problem(
         perspective, setup.floor, setup.tops, setup.size, setup.principal, assumed, known, link, link, setup.noise,
@@ -342,7 +368,7 @@ def _start_cameras(setup: _Setup, problem: Problem) -> list[Floats]:
     else:
         upright = setup.floor * (1.0, -1.0)
         direction, agreement = main_direction(upright)
-        camera[ROLL] = -direction if agreement > 0.7 else 0.0
+        camera[ROLL] = -direction if agreement > 0.7 and ROLL not in problem.frozen else 0.0
         scale = _seen_width(upright, -float(camera[ROLL])) / (problem.assumed.width or 1.0)
     camera[SCALE] = math.log(scale)
     camera[DISTANCE] = math.log(problem.assumed.focal / scale if problem.perspective else ORTHO_DISTANCE)
@@ -393,12 +419,16 @@ def _with_measured_noise(problem: Problem, x: Floats) -> tuple[Problem, Floats]:
     if problem.freedom(x) <= 0:
         return problem, x
     start = problem.sigma
-    for _ in range(4):
-        measured = min(1.5 * start, max(0.005 * start, _spread(problem, x)))
-        if measured > 0.8 * problem.sigma:
+    exact = replace(problem, sigma=0.01 * start)
+    found = exact.solve(x)[0]
+    if _spread(exact, found) < 0.05 * start:
+        return exact, found
+    for _ in range(3):
+        measured = min(1.5 * start, _spread(problem, x))
+        if 0.7 * problem.sigma < measured < 1.2 * problem.sigma:
             break
         problem = replace(problem, sigma=measured)
-        x = problem.solve(x)[0]
+        x = problem.solve(x, 30)[0]
     return problem, x
 
 
@@ -407,7 +437,9 @@ def _squared(setup: _Setup, problem: Problem, x: Floats) -> tuple[Problem, Float
     link_x, link_y, share = square_links(problem.corners(x), setup.floor, SQUARE_DEGREES, 1.5 * setup.noise)
     if share < SQUARE_SHARE or max(link_x) < 1 or max(link_y) < 1:
         return problem, x
-    strict, start = replace(problem, sigma=setup.noise).relinked(x, link_x, link_y)
+    # With nothing left over to tell the noise, corners are trusted more than the assumed lens and tilt.
+    sigma = setup.noise if setup.tops is not None else setup.noise / 3
+    strict, start = replace(problem, sigma=sigma).relinked(x, link_x, link_y)
     strict, found = _with_measured_noise(strict, strict.solve(start)[0])
     free, bound = _spread(problem, x), _spread(strict, found)
     # The noise may look three times as large with the walls made straight: with few corners it is known no better.

@@ -7,7 +7,6 @@ error carries a header or a proxy's address.
 
 from __future__ import annotations
 
-import contextlib
 import io
 import queue
 import threading
@@ -30,6 +29,7 @@ _TICK = 0.05
 _JOIN = 0.5
 _MOST_REDIRECTS = 3
 _PIECE = 16_384
+_HEADERS = {"Content-Type": "application/json", "Accept-Encoding": "identity", "User-Agent": "Code-as-Room"}
 
 
 @dataclass(frozen=True)
@@ -182,7 +182,7 @@ def _send(session: requests.Session, url: str, call: Call, limits: Limits, tell:
         url,
         # Sent in blocks: a socket's time-out covers one whole send, and large pictures take longer on slow lines.
         data=io.BytesIO(call.body),
-        headers={"Content-Type": "application/json", "Accept-Encoding": "identity", **call.headers},
+        headers={**_HEADERS, **call.headers},
         auth=authorise,
         timeout=(limits.connect, limits.read),
         stream=True,
@@ -247,6 +247,4 @@ def _network_fault(error: Exception, leash: Leash, limits: Limits, host: str) ->
         return _fault(
             f"The connection to {host} broke off.", "Check the internet connection and try again.", "network", retry=True
         )
-    with contextlib.suppress(Exception):
-        return _fault(f"The exchange with {host} failed ({type(error).__name__}).", "Try again.", "network")
-    raise error
+    return _fault(f"The exchange with {host} failed ({type(error).__name__}).", "Try again.", "network")

@@ -113,7 +113,7 @@ def status_fault(status: int, body: bytes, headers: Mapping[str, str], host: str
 
 def fault_for(status: int, sentence: str, codes: str, after: float, host: str) -> Fault:
     """The fault for a status (from HTTP or from inside an error body), the service's sentence and its error codes."""
-    said = f" It says: {sentence}" if sentence else ""
+    said = f' It says: "{sentence}"' if sentence else ""
     if status == 402 or (status in (400, 403, 429, 0) and _MONEY.search(f"{codes} {sentence}")):
         error = ServiceError(
             f"The account at {host} has no credit or has reached its limit.{said}",

@@ -66,7 +66,9 @@ class _Mender:
                 self._say("the answer was taken out of a list", "")
                 return data[0]
             lists = [name for name, value in properties.items() if self.resolve(value).get("type") == "array"]
-            if len(lists) == 1 and set(schema.get("required", [])) <= set(lists):
+            required = set(schema.get("required", []))
+            lists = [name for name in lists if name in required] or lists
+            if len(lists) == 1 and required <= set(lists):
                 self._say(f"a bare list was read as {lists[0]}", "")
                 return {lists[0]: data}
         if isinstance(data, dict) and len(data) == 1:

@@ -231,10 +231,11 @@ def contains(meter: Meter, item: Any, place: Any) -> bool:
     kind = place.__class__
     if kind is dict:
         check_key(meter, place, item)
-    elif kind in SIZED:
-        effort = len(place) >> 2
+    else:
+        size = len(place) if kind in SIZED else 0
+        effort = size >> 2
         if item.__class__ in CONTAINERS:
-            effort += min(len(place), 1000) * (measure(meter, item) >> 2)
+            effort += size * (measure(meter, item) >> 2)
         meter.spend(effort)
     found: bool = item in place
     return found

@@ -26,12 +26,13 @@ from ..artifacts.layout import (
     WindowLine,
 )
 from ..errors import ProgramError
+from .limits import DEFAULT_LIMITS
+from .parse_safe import parse
 from .prelude.recorder import Recorder
 
 DECIMALS = 4
 FINE_DECIMALS = 9
 WIDTH = 140
-MOST_BYTES = 4_000_000
 
 LINE_TYPES: dict[str, type[Line]] = {
     "room": RoomLine,
@@ -203,10 +204,10 @@ def parse_layout(text: str) -> Layout:
     """The layout lines of a room text (what follows the marker), in their order; everything else is passed over.
 
     Raises:
-        ProgramError: the text is not Python, a layout line is not a plain statement with literal arguments, or one
+        ProgramError: the text is not Python or too large, a layout line is not a plain statement with literal arguments, or one
             says something that no room can have. It names the line.
     """
-    return layout_of(layout_statements(parse_tree(text)))
+    return layout_of(layout_statements(parse(text, DEFAULT_LIMITS)))
 
 
 def layout_of(statements: list[Statement]) -> Layout:
@@ -219,18 +220,6 @@ def layout_of(statements: list[Statement]) -> Layout:
         if statement.name != "room":
             lists[_LISTS[statement.name]].append(statement.line)
     return Layout.model_validate({"room": rooms[0], **lists})
-
-
-def parse_tree(text: str) -> ast.Module:
-    """The syntax tree of a room text. Raises ProgramError with the line."""
-    if len(text) > MOST_BYTES:
-        raise ProgramError("the program is too long")
-    try:
-        return ast.parse(text)
-    except SyntaxError as error:
-        raise ProgramError(f"this is not valid Python: {error.msg}", error.lineno or 0) from None
-    except (ValueError, RecursionError, MemoryError):
-        raise ProgramError("the program cannot be read: it is nested too deeply or holds a null character") from None
 
 
 def layout_statements(tree: ast.Module) -> list[Statement]:

@@ -11,7 +11,9 @@ from ..artifacts.analysis import Finding
 from ..artifacts.layout import LayoutEdit, ProxyLine
 from ..errors import ProgramError
 from .edits import Edited, apply_edits, edit_proxies
-from .lines import Statement, called_name, layout_of, layout_statements, parse_layout, parse_tree, print_line, quoted
+from .limits import DEFAULT_LIMITS
+from .lines import Statement, called_name, layout_of, layout_statements, parse_layout, print_line, quoted
+from .parse_safe import parse
 
 __all__ = ["apply_edits", "patch_text"]
 
@@ -37,7 +39,9 @@ def patch_text(text: str, edits: list[LayoutEdit]) -> tuple[str, list[Finding]]:
     Raises:
         ProgramError: the text cannot be parsed (see `parse_layout`).
     """
-    tree = parse_tree(text)
+    mark = "\ufeff" if text.startswith("\ufeff") else ""
+    text = text.removeprefix(mark)
+    tree = parse(text, DEFAULT_LIMITS)
     statements = layout_statements(tree)
     edited = edit_proxies(layout_of(statements), edits)
     source = _Source(text, tree)
@@ -45,8 +49,8 @@ def patch_text(text: str, edits: list[LayoutEdit]) -> tuple[str, list[Finding]]:
     for change in sorted(changes, key=lambda c: (c.start, c.end), reverse=True):
         text = text[: change.start] + change.text + text[change.end :]
     if parse_layout(text).proxies != edited.proxies:
-        raise ProgramError("the edits cannot be written into this text", 0, "Put each layout line on a line of its own.")
-    return text, edited.findings
+        raise ProgramError("the edits cannot be written into this text", 0, "Put each layout line on its own line.")
+    return mark + text, edited.findings
 
 
 class _Source:

@@ -56,6 +56,8 @@ def realise_record(record: Record, collection_name: str = "Code-as-Room", scene:
             done[target.key[0]] = obj
     if scene.camera is None:
         scene.camera = next((done[line["id"]] for line in record.cameras if line["id"] in done), None)
+    for layer in scene.view_layers:
+        layer.update()
     return notes
 
 

@@ -148,8 +148,9 @@ def chair(size: Size) -> list[Part]:
 def armchair(size: Size) -> list[Part]:
     """A tub chair: one curved back that runs out into the arms, a loose seat cushion and a small back cushion."""
     w, d, h = size
-    n = 72
-    t = np.linspace(-1, 1, n)
+    ends = 1 - 0.07 * (1 - np.cos(np.linspace(0, np.pi / 2, 9)))  # closer rings where the arms round off
+    t = np.concatenate([-ends, np.linspace(-0.92, 0.92, 64), ends[::-1]])
+    n = len(t)
     a = np.radians(118) * t
     rx, ry = w / 2 - 0.075, d / 2 - 0.085
     path = np.column_stack([np.sin(a) * rx, np.cos(a) * ry + 0.0, np.zeros(n)])
@@ -158,12 +159,12 @@ def armchair(size: Size) -> list[Part]:
     path[front, 0] = np.sign(a[front]) * rx
     path[front, 1] = -np.abs(np.abs(a[front]) - np.pi / 2) * ry * 1.9
     top = 0.56 + (h - 0.56) * np.cos(np.clip(np.abs(t) * 1.25, 0, 1) * np.pi / 2) ** 1.1
-    end = np.clip((1 - np.abs(t)) / 0.05, 0.0, 1.0)
+    end = np.clip((1 - np.abs(t)) / 0.07, 0.0, 1.0)
     profiles = []
     for k in range(n):
         tall, thick = (top[k] - 0.14), 0.13
-        outline = rounded_rectangle(thick, tall, 0.062, 7)
-        outline *= 0.80 + 0.20 * np.sqrt(1 - (1 - end[k]) ** 2)
+        inset = 0.052 * (1 - np.sqrt(1 - (1 - end[k]) ** 2))
+        outline = rounded_rectangle(thick - 2 * inset, tall - 2 * inset, 0.062, 7)
         outline[:, 1] += 0.14 + tall / 2
         lean = (outline[:, 1] - 0.14) / 0.62
         outline[:, 0] += 0.03 * lean * np.cos(t[k] * 1.2)

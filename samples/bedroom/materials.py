@@ -200,10 +200,12 @@ def print_art(name: str) -> bpy.types.Material:
 
 
 def glass(name: str) -> bpy.types.Material:
+    """A pane that lets the light through and shows the camera a pale sky."""
     n = Nodes(name)
-    clear = n.add("BsdfTransparent", {"Color": (0.93, 0.97, 0.98, 1.0)})
-    shine = n.add("BsdfGlossy", {"Roughness": 0.02})
-    return n.surface(n.add("MixShader", {"0": 0.07, "1": clear.outputs[0], "2": shine.outputs[0]}))
+    clear = n.add("BsdfTransparent", {"Color": (0.95, 0.98, 1.0, 1.0)})
+    sky = n.add("Emission", {"Color": rgb("#bcd3e2"), "Strength": 1.6})
+    seen = n.add("Math", {"0": n.add("LightPath").outputs["Is Camera Ray"], "1": 0.55}, operation="MULTIPLY").outputs[0]
+    return n.surface(n.add("MixShader", {"0": seen, "1": clear.outputs[0], "2": sky.outputs[0]}))
 
 
 MAKERS: dict[str, Callable[[str], bpy.types.Material]] = {
@@ -216,10 +218,10 @@ MAKERS: dict[str, Callable[[str], bpy.types.Material]] = {
     "lacquer": lambda m: plain(m, "#cfc8ba", 0.45),
     "lacquer_dark": lambda m: plain(m, "#a39b8c", 0.5),
     "headboard": lambda m: fabric(m, "#a2937d", "#b9aa93", depth=0.002),
-    "cotton": lambda m: fabric(m, "#dcd8d0", "#e9e6e0", 0.1),
+    "cotton": lambda m: fabric(m, "#d6d2c9", "#e3dfd8", 0.1),
     "pillowcase": lambda m: fabric(m, "#d8d2c6", "#e6e1d7", 0.1),
     "duvet_fold": lambda m: fabric(m, "#b3b2a6", "#c2c1b6", 0.1),
-    "terracotta": lambda m: knit(m, "#80503c", "#9d6850"),
+    "terracotta": lambda m: knit(m, "#7d5848", "#98715d"),
     "velvet": lambda m: fabric(m, "#3a4a41", "#526356", 0.5),
     "bench": lambda m: fabric(m, "#8c8170", "#a69b88", depth=0.003),
     "seat": lambda m: fabric(m, "#c3baa9", "#d5cdbe", depth=0.002),

@@ -16,7 +16,7 @@ def floor_boards() -> tuple[Part, np.ndarray]:
     rng = np.random.default_rng(7)
     parts: list[Part] = []
     tones: list[np.ndarray] = []
-    breadth, gap = 0.130, 0.0022
+    breadth, gap = 0.130, 0.0008
     low_y, high_y = -D / 2 - T - 0.01, D / 2 + 0.01
     for row, y in enumerate(np.arange(low_y, high_y, breadth)):
         x = -W / 2 - 0.02 - rng.uniform(0, 1.2)
@@ -27,8 +27,8 @@ def floor_boards() -> tuple[Part, np.ndarray]:
             if b - a < 0.01:
                 continue
             c, d = y, min(y + breadth, high_y)
-            e = 0.003
-            ring = [(a + gap / 2, b - gap / 2, c + gap / 2, d - gap / 2, -0.004), (a + gap / 2 + e, b - gap / 2 - e,
+            e = 0.0018
+            ring = [(a + gap / 2, b - gap / 2, c + gap / 2, d - gap / 2, -0.002), (a + gap / 2 + e, b - gap / 2 - e,
                      c + gap / 2 + e, d - gap / 2 - e, 0.0)]
             verts = np.array([[px, py, z] for x0, x1, y0, y1, z in ring
                               for px, py in ((x0, y0), (x1, y0), (x1, y1), (x0, y1))])

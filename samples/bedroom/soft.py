@@ -102,7 +102,7 @@ def inflated(width: float, depth: float, seed: int) -> tuple[Array, tuple[tuple[
     verts = np.vstack([one.verts, one.verts[inner]])
     # Rounded corners and slightly bowed edges: a square sheet would blow up into a star.
     q = verts[:, :2] / (np.array([width, depth]) / 2)
-    verts[:, :2] *= 1 + 0.035 * (1 - q[:, ::-1] ** 2) - 0.075 * (np.abs(q[:, :1] * q[:, 1:]) ** 3)
+    verts[:, :2] *= 1 + 0.10 * (1 - q[:, ::-1] ** 2) - 0.075 * (np.abs(q[:, :1] * q[:, 1:]) ** 3)
     verts[:, 2] += 0.004 * noise(verts, 9.0, seed)
     verts[len(one.verts):, 2] -= 0.012
     verts[inner, 2] += 0.012

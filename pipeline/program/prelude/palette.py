@@ -47,7 +47,7 @@ ROLE_COLOURS: dict[str, tuple[str, float]] = {
     "door": ("CDB18E", 1.0),
     "metal": ("8C8C8C", 1.0),
     "glass": ("BFDDEA", 0.35),
-    "marker": ("3C3A38", 1.0),
+    "marker": ("57524D", 1.0),
     "wood": ("B58B5E", 1.0),
     "fabric": ("B9B4AA", 1.0),
 }

@@ -38,7 +38,7 @@ def proxy_shapes(line: dict[str, Any]) -> list[Shape]:
 def _arrow_points(width: float, front: float, back: float) -> list[tuple[float, float]]:
     """Tip, right and left corner of the arrow on a top face `width` wide that runs from y = front to y = back."""
     depth = back - front
-    long = min(0.30 * depth, 0.30, 0.6 * width)
+    long = min(0.26 * depth, 0.20, 0.5 * width)
     half = min(0.7 * long, 0.30 * width)
     tip = front + 0.10 * depth
     return [(0.0, tip), (half, tip + long), (-half, tip + long)]

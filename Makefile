@@ -1,0 +1,47 @@
+# Two commands on a fresh machine:   make demo     make test
+# Python 3.11 gets bpy 5.0.1, Python 3.13 gets bpy 5.2.x. Name another one with PYTHON=/path/to/python.
+
+PYTHON ?= $(shell for p in python3.11 python3.13 python3 python; do \
+	command -v $$p >/dev/null 2>&1 && $$p -c 'import sys; sys.exit(sys.version_info[:2] not in ((3, 11), (3, 13)))' 2>/dev/null \
+	&& { command -v $$p; break; }; done)
+VENV := .venv
+RUN := $(VENV)/bin
+OUT ?= out/demo
+BLENDER ?= blender
+
+.PHONY: demo test lint setup test-desktop benchmark clean
+
+demo: setup
+	$(RUN)/code-as-room samples/bedroom/picture.png --replies samples/bedroom/replies --out $(OUT)
+
+test: setup
+	$(RUN)/python -m pytest
+
+lint: setup
+	$(RUN)/ruff check .
+	$(RUN)/ruff format --check .
+	$(RUN)/mypy
+
+benchmark: setup
+	$(RUN)/python -m benchmark.run
+
+test-desktop:
+	$(BLENDER) --factory-startup --python-exit-code 1 --python tests/desktop/run_panel.py
+
+setup: $(VENV)/.ready
+
+$(VENV)/.ready: pyproject.toml
+	@if [ -z "$(PYTHON)" ]; then \
+	echo "Code-as-Room needs Python 3.11 (for bpy 5.0) or Python 3.13 (for bpy 5.2), and found neither."; \
+	echo "Install one of them (python.org, your package manager or pyenv), then run this again,"; \
+	echo "or name it: make $(MAKECMDGOALS) PYTHON=/path/to/python3.11"; exit 1; fi
+	@echo "Setting up $(VENV) with $(PYTHON); the first time takes a few minutes and about 1.5 GB."
+	@$(PYTHON) -m venv $(VENV) || { echo "The venv module is missing: on Debian and Ubuntu, install python3-venv."; exit 1; }
+	@$(RUN)/python -m pip install --quiet --disable-pip-version-check --editable '.[blender,dev]'
+	@$(RUN)/python -c 'import bpy' || { \
+	echo "bpy was installed but cannot be loaded: system libraries are missing."; \
+	echo "On Debian and Ubuntu: apt-get install libx11-6 libxi6 libxrender1 libxfixes3 libxkbcommon0 libsm6 libgl1 libegl1 libgl1-mesa-dri"; exit 1; }
+	@touch $@
+
+clean:
+	rm -rf $(VENV) out build *.egg-info

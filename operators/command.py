@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The two commands: `code-as-room PICTURE --out DIR` and `blender --command code_as_room PICTURE --out DIR`."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..pipeline.errors import OutputError, RoomError
+from ..pipeline.memory import Memory, load_memory
+
+if TYPE_CHECKING:
+    from ..pipeline.models.base import ModelClient
+    from ..pipeline.run import Run
+
+EXIT_PROBLEM = 1
+EXIT_USAGE = 2
+
+
+def parser(program: str) -> argparse.ArgumentParser:
+    """The command line."""
+    result = argparse.ArgumentParser(
+        prog=program, description="One picture of a room seen from above becomes an editable Blender room."
+    )
+    result.add_argument("picture", type=Path, help="PNG, JPEG, WebP or TIFF picture of a room seen from above")
+    result.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for the results")
+    result.add_argument("--width", type=float, metavar="M", help="the room's inner width in metres, when you know it")
+    result.add_argument("--wall-height", type=float, metavar="M", help="height of the walls in metres, when you know it")
+    result.add_argument("--notes", default="", help="a hint for the model, such as 'the bed is 1.4 m wide'")
+    result.add_argument("--iterations", type=int, default=5, metavar="N", help="most rounds of the layout loop (0-5)")
+    result.add_argument("--resume", action="store_true", help="go on from DIR/memory.json; finished stages are kept")
+    group = result.add_argument_group("who answers (default: the built-in analysis, which needs no model)")
+    group.add_argument("--base-url", metavar="URL", help="an OpenAI-style service, such as http://localhost:1234/v1")
+    group.add_argument("--model", metavar="NAME", help="the model's name at that service")
+    group.add_argument("--key-env", metavar="NAME", help="environment variable that holds the key")
+    group.add_argument("--replies", type=Path, metavar="DIR", help="play back replies recorded in this folder")
+    group.add_argument("--record", type=Path, metavar="DIR", help="record every reply in this folder")
+    return result
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line in plain Python with the `bpy` package; returns the exit code."""
+    return cli_main(list(sys.argv[1:] if argv is None else argv), "code-as-room")
+
+
+def cli_main(argv: list[str], program: str = "blender --command code_as_room") -> int:
+    """Run the command line; errors become one sentence on standard error, never a traceback."""
+    try:
+        options = parser(program).parse_args(argv)
+    except SystemExit as stop:
+        return int(stop.code or 0) and EXIT_USAGE
+    try:
+        return _perform(options)
+    except RoomError as error:
+        print(f"{program}: {error}", file=sys.stderr)
+        return EXIT_PROBLEM
+    except KeyboardInterrupt:
+        print(f"\n{program}: stopped. What was answered is kept; add --resume to go on.", file=sys.stderr)
+        return 130
+
+
+def _perform(options: argparse.Namespace) -> int:
+    from ..pipeline.picture import load_picture
+
+    picture = load_picture(options.picture)
+    folder = prepare_folder(options.out)
+    memory = _memory(folder, options.resume)
+    memory.settings = _settings(options, memory.settings)
+    client = _client(options)
+    for note in picture.notes:
+        print(f"Note: {note}")
+    print(f"Picture: {picture.name}, {picture.width} x {picture.height}")
+    print(f"Answers: {client.describes}")
+    try:
+        import bpy
+    except ImportError as error:
+        raise RoomError(
+            f"Blender's Python module cannot be loaded ({error}).", "Run `make demo` once, or use blender --command."
+        ) from error
+    from ..pipeline.run import Run
+    from ..pipeline.scene.backend import BlenderScene
+
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    run = Run(picture, memory, client, BlenderScene(bpy.context.scene), progress=_print_progress)
+    try:
+        run.run_all()
+    finally:
+        _save_memory(run, folder)
+    return _finish(run, folder)
+
+
+def _finish(run: Run, folder: Path) -> int:
+    from ..pipeline.artifacts.layout import LayoutProgram
+    from .outputs import write_outputs
+
+    paths = write_outputs(run, folder)
+    program = run.memory.latest(LayoutProgram)
+    if program is not None:
+        states = [entry.state for entry in program.ledger]
+        counts = ", ".join(f"{states.count(s)} {s}" for s in ("placed", "deferred", "dropped") if s in states)
+        print(f"Objects: {len(states)} detected: {counts or 'none'}. Layout score {program.score.total:.2f}.")
+    print(f"Made by: {run.client.describes}")
+    print(f"Results in {folder}:")
+    for path in paths:
+        print(f"  {path.name}")
+    return 0
+
+
+def prepare_folder(folder: Path) -> Path:
+    """The folder for results, made if it is not there and tried for writing before any work is done.
+
+    Raises:
+        OutputError: it is a file, or nothing can be written in it.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.NamedTemporaryFile(dir=folder, prefix=".try-", delete=True):
+            pass
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise OutputError(f"Nothing can be written in {folder}: {reason}.", "Choose another folder with --out.") from error
+    return folder
+
+
+def _memory(folder: Path, resume: bool) -> Memory:
+    path = folder / "memory.json"
+    if not resume:
+        return Memory()
+    try:
+        return load_memory(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        print(f"Nothing to resume in {folder}; beginning anew.")
+        return Memory()
+    except (OSError, UnicodeDecodeError) as error:
+        raise RoomError(f"{path.name} cannot be read: {error}.", "Run without --resume to begin anew.") from error
+
+
+def _settings(options: argparse.Namespace, earlier: dict[str, str]) -> dict[str, str]:
+    settings = dict(earlier)
+    for name, value, low, high in (
+        ("known_width_m", options.width, 0.5, 100.0),
+        ("wall_height_m", options.wall_height, 1.0, 20.0),
+    ):
+        if value is None:
+            continue
+        if not low <= value <= high:
+            raise RoomError(f"{value:g} m is not a possible size.", f"Give metres between {low:g} and {high:g}.")
+        settings[name] = f"{value:g}"
+    if options.notes:
+        settings["notes"] = options.notes
+    settings["iterations"] = str(max(0, min(5, options.iterations)))
+    return settings
+
+
+def _client(options: argparse.Namespace) -> ModelClient:
+    from ..pipeline.models.recorded import Recorder
+    from ..pipeline.models.registry import ClientSettings, make_client, settings_from_environment
+
+    if options.replies is not None:
+        settings = ClientSettings(kind="recorded", folder=str(options.replies))
+    elif options.base_url:
+        key = os.environ.get(options.key_env, "") if options.key_env else os.environ.get("CODE_AS_ROOM_API_KEY", "")
+        settings = ClientSettings(kind="openai", base_url=options.base_url, model=options.model or "", api_key=key)
+    else:
+        settings = settings_from_environment()
+    client = make_client(settings)
+    return Recorder(client, options.record) if options.record is not None else client
+
+
+def _print_progress(what: str, step: int, steps: int) -> None:
+    print(f"  {what}" + (f" ({step}/{steps})" if steps else ""), flush=True)
+
+
+def _save_memory(run: Run, folder: Path) -> None:
+    """Keep what was answered even when a stage fails."""
+    from .outputs import write_memory
+
+    write_memory(run.memory, folder)

@@ -1,0 +1,397 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Compiles expressions to Python closures: one closure for each operation, chosen by the shape of its operands."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable
+from typing import Any
+
+from ..errors import ProgramError
+from . import arithmetic, text
+from .limits import Meter
+from .scopes import Names, Scope
+from .values import UNSET, Code, Frame, Native, check_key, settle
+
+
+class Expressions:
+    """Compiles the expressions of one program.
+
+    Args:
+        names: where each variable lies.
+        meter: what the compiled code is counted by.
+        natives: functions that programs may call.
+        constants: names with a fixed value.
+        top: the module's frame.
+
+    Attributes:
+        cost: steps of what was compiled since it was set to 0.
+    """
+
+    def __init__(
+        self, names: Names, meter: Meter, natives: dict[str, Native], constants: dict[str, Any], top: Frame
+    ) -> None:
+        self.names = names
+        self.meter = meter
+        self.natives = natives
+        self.constants = constants
+        self.top = top
+        self.cost = 0
+
+    def compile(self, node: ast.expr, scope: Scope) -> Code:
+        """The closure for an expression that is read in the scope."""
+        compiled: Code = getattr(self, f"on_{type(node).__name__}")(node, scope)
+        return compiled
+
+    def compile_all(self, nodes: list[ast.expr], scope: Scope) -> tuple[Code, ...]:
+        """The closures for several expressions."""
+        return tuple(self.compile(node, scope) for node in nodes)
+
+    def on_Constant(self, node: ast.Constant, scope: Scope) -> Code:
+        """A literal."""
+        value = node.value
+        return lambda f: value
+
+    def on_Name(self, node: ast.Name, scope: Scope) -> Code:
+        """A variable, a constant or a function as a value."""
+        return self.load(node.id, scope)
+
+    def load(self, name: str, scope: Scope) -> Code:
+        """The closure that reads a variable, chosen by where it lies."""
+        owner = scope.owner(name)
+        if owner is None:
+            value = self.natives[name] if name in self.natives else self.constants[name]
+            return lambda f: value
+        slot = owner.slots[name]
+        frame, target = scope.frame, owner.frame
+        if frame is target:
+            return load_parameter(slot) if name in owner.parameters else load_local(slot, name)
+        if target is self.names.module:
+            return load_global(self.top, slot, name)
+        links = []
+        while frame is not target:
+            links.append(frame.link)
+            assert frame.around is not None
+            frame = frame.around.frame
+        return load_outer(tuple(links), slot, name)
+
+    def store(self, node: ast.expr, scope: Scope) -> Callable[[Frame, Any], None]:
+        """The function of frame and value that assigns to a target."""
+        if isinstance(node, ast.Name):
+            return store_slot(scope.slots[node.id])
+        if isinstance(node, (ast.Tuple, ast.List)):
+            self.cost += 1 + len(node.elts)
+            return unpack(tuple(self.store(item, scope) for item in node.elts))
+        assert isinstance(node, ast.Subscript)
+        self.cost += 2
+        return store_item(self.meter, self.compile(node.value, scope), self.compile(node.slice, scope))
+
+    def on_BinOp(self, node: ast.BinOp, scope: Scope) -> Code:
+        """left op right"""
+        self.cost += 1
+        make = arithmetic.OPERATIONS[type(node.op).__name__][0]
+        return make(self.meter, self.compile(node.left, scope), self.compile(node.right, scope))
+
+    def on_UnaryOp(self, node: ast.UnaryOp, scope: Scope) -> Code:
+        """op operand"""
+        operand = node.operand
+        if isinstance(operand, ast.Constant) and isinstance(node.op, ast.USub) and type(operand.value) in (int, float):
+            value = -operand.value  # type: ignore[operator]
+            return lambda f: value
+        self.cost += 1
+        return arithmetic.UNARY[type(node.op).__name__](self.meter, self.compile(operand, scope))
+
+    def on_BoolOp(self, node: ast.BoolOp, scope: Scope) -> Code:
+        """and, or"""
+        self.cost += len(node.values) - 1
+        values = self.compile_all(node.values, scope)
+        return all_of(values) if isinstance(node.op, ast.And) else any_of(values)
+
+    def on_Compare(self, node: ast.Compare, scope: Scope) -> Code:
+        """Comparisons, chained or not"""
+        self.cost += len(node.ops)
+        operands = self.compile_all([node.left, *node.comparators], scope)
+        kinds = [type(operation).__name__ for operation in node.ops]
+        if len(kinds) == 1:
+            return arithmetic.comparison(self.meter, kinds[0], *operands)
+        return chain(operands, tuple(arithmetic.comparison_of(kind, self.meter) for kind in kinds))
+
+    def on_IfExp(self, node: ast.IfExp, scope: Scope) -> Code:
+        """a if condition else b"""
+        self.cost += 1
+        test, then, other = self.compile_all([node.test, node.body, node.orelse], scope)
+        return lambda f: then(f) if test(f) else other(f)
+
+    def on_Tuple(self, node: ast.Tuple, scope: Scope) -> Code:
+        """(a, b, *c)"""
+        return self.display(node.elts, scope, tuple)
+
+    def on_List(self, node: ast.List, scope: Scope) -> Code:
+        """[a, b, *c]"""
+        return self.display(node.elts, scope, list)
+
+    def display(self, nodes: list[ast.expr], scope: Scope, kind: type[list[Any]] | type[tuple[Any, ...]]) -> Code:
+        """A list or tuple that is written out."""
+        self.cost += 2 + len(nodes) // 2
+        if any(isinstance(node, ast.Starred) for node in nodes):
+            collect = self.spread(nodes, scope)
+            return (lambda f: tuple(collect(f))) if kind is tuple else collect
+        if kind is tuple and all(isinstance(node, ast.Constant) for node in nodes):
+            value = tuple(node.value for node in nodes if isinstance(node, ast.Constant))
+            return lambda f: value
+        items = self.compile_all(nodes, scope)
+        return list_of(items) if kind is list else tuple_of(items)
+
+    def spread(self, nodes: list[ast.expr], scope: Scope) -> Code:
+        """A list of values some of which are *sequences."""
+        parts = tuple(
+            (isinstance(node, ast.Starred), self.compile(node.value if isinstance(node, ast.Starred) else node, scope))
+            for node in nodes
+        )
+        drain = self.natives["list"].call
+        meter = self.meter
+
+        def run(f: Frame) -> list[Any]:
+            values: list[Any] = []
+            for starred, part in parts:
+                if starred:
+                    values += drain(part(f))
+                else:
+                    values.append(part(f))
+            settle(meter, values)
+            return values
+
+        return run
+
+    def on_Dict(self, node: ast.Dict, scope: Scope) -> Code:
+        """{key: value}"""
+        self.cost += 2 + 2 * len(node.keys)
+        keys = tuple(self.compile(key, scope) for key in node.keys if key is not None)
+        pairs = tuple(zip(keys, self.compile_all(node.values, scope), strict=True))
+        meter = self.meter
+
+        def run(f: Frame) -> dict[Any, Any]:
+            table: dict[Any, Any] = {}
+            for key, value in pairs:
+                k = key(f)
+                v = value(f)
+                check_key(meter, table, k)
+                table[k] = v
+            return table
+
+        return run
+
+    def on_Subscript(self, node: ast.Subscript, scope: Scope) -> Code:
+        """values[index], values[from:to:step]"""
+        self.cost += 1
+        value = self.compile(node.value, scope)
+        if not isinstance(node.slice, ast.Slice):
+            return item_of(self.meter, value, self.compile(node.slice, scope))
+        bounds = tuple(
+            None if bound is None else self.compile(bound, scope)
+            for bound in (node.slice.lower, node.slice.upper, node.slice.step)
+        )
+        return slice_of(self.meter, value, bounds)
+
+    def on_JoinedStr(self, node: ast.JoinedStr, scope: Scope) -> Code:
+        """f"..." """
+        self.cost += 1 + len(node.values)
+        parts = []
+        for part in node.values:
+            if isinstance(part, ast.FormattedValue):
+                spec = text.spec_of(part.format_spec) if part.format_spec is not None else ""
+                parts.append(text.field(self.meter, self.compile(part.value, scope), spec or ""))
+            else:
+                parts.append(self.compile(part, scope))
+        return text.joined(self.meter, tuple(parts))
+
+
+def unset(name: str) -> ProgramError:
+    """The refusal of a variable that is read before it is set."""
+    return ProgramError(f"{name} is used before it is set")
+
+
+def load_parameter(slot: int) -> Code:
+    """A variable that always has a value."""
+    return lambda f: f[slot]
+
+
+def load_local(slot: int, name: str) -> Code:
+    """A variable of this frame."""
+
+    def run(f: Frame) -> Any:
+        value = f[slot]
+        if value is UNSET:
+            raise unset(name)
+        return value
+
+    return run
+
+
+def load_global(top: Frame, slot: int, name: str) -> Code:
+    """A variable of the module."""
+
+    def run(f: Frame) -> Any:
+        value = top[slot]
+        if value is UNSET:
+            raise unset(name)
+        return value
+
+    return run
+
+
+def load_outer(links: tuple[int, ...], slot: int, name: str) -> Code:
+    """A variable of a function around this one."""
+
+    def run(f: Frame) -> Any:
+        for link in links:
+            f = f[link]
+        value = f[slot]
+        if value is UNSET:
+            raise unset(name)
+        return value
+
+    return run
+
+
+def store_slot(slot: int) -> Callable[[Frame, Any], None]:
+    """Assigns to a variable of this frame."""
+
+    def run(f: Frame, value: Any) -> None:
+        f[slot] = value
+
+    return run
+
+
+def unpack(targets: tuple[Callable[[Frame, Any], None], ...]) -> Callable[[Frame, Any], None]:
+    """Assigns the items of a value to several targets."""
+    count = len(targets)
+
+    def run(f: Frame, value: Any) -> None:
+        found = []
+        for item in value:
+            found.append(item)
+            if len(found) > count:
+                raise ValueError(f"too many values to unpack (expected {count})")
+        if len(found) < count:
+            raise ValueError(f"not enough values to unpack (expected {count}, got {len(found)})")
+        for target, item in zip(targets, found, strict=True):
+            target(f, item)
+
+    return run
+
+
+def store_item(meter: Meter, container: Code, index: Code) -> Callable[[Frame, Any], None]:
+    """Assigns to an item of a list or dict."""
+
+    def run(f: Frame, value: Any) -> None:
+        put_item(meter, container(f), index(f), value)
+
+    return run
+
+
+def put_item(meter: Meter, place: Any, key: Any, value: Any) -> None:
+    """place[key] = value"""
+    if place.__class__ is dict:
+        check_key(meter, place, key)
+        if len(place) >= meter.limits.list_items and key not in place:
+            raise ProgramError(f"a dict has more than {meter.limits.list_items:,} items")
+        meter.spend(4)
+    elif place.__class__ is not list:
+        raise TypeError(f"items of a {type(place).__name__} cannot be assigned; use a list or a dict")
+    place[key] = value
+
+
+def get_item(meter: Meter, place: Any, key: Any) -> Any:
+    """place[key]"""
+    if place.__class__ is dict:
+        check_key(meter, place, key)
+    return place[key]
+
+
+def item_of(meter: Meter, container: Code, index: Code) -> Code:
+    """container[index]"""
+
+    def run(f: Frame) -> Any:
+        place = container(f)
+        key = index(f)
+        if place.__class__ is dict:
+            check_key(meter, place, key)
+        return place[key]
+
+    return run
+
+
+def slice_of(meter: Meter, container: Code, bounds: tuple[Code | None, ...]) -> Code:
+    """container[lower:upper:step]"""
+
+    def run(f: Frame) -> Any:
+        place = container(f)
+        part = slice(*(None if bound is None else bound(f) for bound in bounds))
+        if place.__class__ is dict:
+            raise TypeError("a dict has no slices")
+        return settle(meter, place[part])
+
+    return run
+
+
+def all_of(values: tuple[Code, ...]) -> Code:
+    """a and b and c"""
+    *first, last = values
+
+    def run(f: Frame) -> Any:
+        for value in first:
+            v = value(f)
+            if not v:
+                return v
+        return last(f)
+
+    return run
+
+
+def any_of(values: tuple[Code, ...]) -> Code:
+    """a or b or c"""
+    *first, last = values
+
+    def run(f: Frame) -> Any:
+        for value in first:
+            v = value(f)
+            if v:
+                return v
+        return last(f)
+
+    return run
+
+
+def chain(operands: tuple[Code, ...], compares: tuple[Callable[[Any, Any], Any], ...]) -> Code:
+    """a < b < c"""
+    first, *rest = operands
+    steps = tuple(zip(compares, rest, strict=True))
+
+    def run(f: Frame) -> Any:
+        left = first(f)
+        for compare, operand in steps:
+            right = operand(f)
+            result = compare(left, right)
+            if not result:
+                return result
+            left = right
+        return result
+
+    return run
+
+
+def list_of(items: tuple[Code, ...]) -> Code:
+    """[a, b, c]"""
+    return lambda f: [item(f) for item in items]
+
+
+def tuple_of(items: tuple[Code, ...]) -> Code:
+    """(a, b, c)"""
+    if len(items) == 2:
+        a, b = items
+        return lambda f: (a(f), b(f))
+    if len(items) == 3:
+        c, d, e = items
+        return lambda f: (c(f), d(f), e(f))
+    return lambda f: tuple([item(f) for item in items])

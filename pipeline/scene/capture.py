@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Pictures of the room as it stands in the scene: through the reference camera, and from a corner for people."""
+
+from __future__ import annotations
+
+import io
+import os
+import tempfile
+from dataclasses import dataclass
+from typing import Any
+
+import bpy
+from PIL import Image
+
+from ..artifacts.camera import CameraModel
+from ..errors import SceneError
+from .compat import ensure_gpu
+from .labels import draw_labels, object_labels
+from .studio import studio, visible_objects
+from .tags import find_room_collection
+from .viewpoint import corner_camera
+
+_CYCLES_SAMPLES = 8
+
+
+@dataclass(frozen=True)
+class Picture:
+    """PNG bytes, and what drew them: "workbench" or "cycles" (the fallback without a graphics driver)."""
+
+    png: bytes
+    method: str
+
+
+def capture(scene: Any, camera: CameraModel, long_side: int = 1024, labels: bool = False, fine: bool = False) -> Picture:
+    """What stands in the room's collection, through a camera, in the aspect of its `image_size`.
+
+    The scene that is given is not changed. `labels` writes each proxy's id at its projected centre; `fine` takes
+    longer and looks better.
+
+    Raises:
+        SceneError: there is no room in the scene, or nothing could draw it.
+    """
+    room = _room(scene)
+    with studio(visible_objects(room), camera, long_side, fine) as stage:
+        picture = _draw(stage)
+    if not labels:
+        return picture
+    image = Image.open(io.BytesIO(picture.png)).convert("RGB")
+    draw_labels(image, object_labels(room, camera))
+    return Picture(_png(image), picture.method)
+
+
+def eye_view(scene: Any, long_side: int = 1280) -> Picture:
+    """A raised view into the room from the corner that hides least, near walls cut down. Raises SceneError."""
+    room = _room(scene)
+    objects = visible_objects(room)
+    with studio(objects, corner_camera(objects), long_side, fine=True) as stage:
+        return _draw(stage)
+
+
+def _room(scene: Any) -> Any:
+    room = find_room_collection(scene)
+    if room is None or not visible_objects(room):
+        raise SceneError("There is no room in this scene yet.", "Run the layout stage first.")
+    return room
+
+
+def _draw(stage: Any) -> Picture:
+    """Render with Workbench; where there is no graphics driver, with Cycles on the processor."""
+    problems = []
+    for method, prepare in (("workbench", ensure_gpu), ("cycles", lambda: _use_cycles(stage))):
+        try:
+            prepare()
+            return Picture(_rendered(stage), method)
+        except (RuntimeError, OSError, SystemError) as problem:
+            problems.append(f"{method}: {str(problem).strip() or type(problem).__name__}")
+    raise SceneError(
+        f"Blender could not draw the room ({'; '.join(problems)}).",
+        "Install a graphics driver; on a computer without one, Mesa's EGL (libegl1, libgl1-mesa-dri).",
+    )
+
+
+def _rendered(stage: Any) -> bytes:
+    """Render the stage to a temporary file and read it."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "picture.png")
+        stage.render.filepath = path
+        bpy.ops.render.render(write_still=True, scene=stage.name)
+        with open(path, "rb") as file:
+            data = file.read()
+    if not data:
+        raise RuntimeError("the picture is empty")
+    return data
+
+
+def _use_cycles(stage: Any) -> None:
+    """Few samples, flat bright light: enough to read a layout."""
+    stage.render.engine = "CYCLES"
+    stage.cycles.samples = _CYCLES_SAMPLES
+    stage.cycles.use_denoising = False
+    stage.cycles.max_bounces = 2
+
+
+def _png(image: Image.Image) -> bytes:
+    buffer = io.BytesIO()
+    image.save(buffer, "PNG")
+    return buffer.getvalue()

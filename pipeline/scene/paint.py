@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Stand-ins for a picture: copies of meshes with shaded colours, so that every face reads and no wall hides the floor.
+
+Workbench's own lights turn some walls black or tint them, and brighten others; what the critic and the artist compare
+must have the palette's colours on every upper face. So each face gets its material's viewport colour times a shade
+that depends only on where it faces, and Workbench draws it flat, with its shadows, cavity and outlines.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import bpy
+import numpy as np
+
+from .tags import world_matrix
+
+_DEFAULT_COLOUR = (0.4, 0.4, 0.4)
+_SIDE_LIGHT = np.array((-0.06, -0.08, 0.0))  # vertical faces to the south and west are a little lighter
+
+
+def painted_copy(obj: Any, made: list[Any], kerb: float | None = None) -> Any:
+    """A copy of a mesh object in its place, with shaded vertex colours; cut down to `kerb` metres where given.
+
+    New datablocks are appended to `made`, objects before their meshes, for the caller to remove.
+    """
+    mesh = obj.data.copy()
+    copy = bpy.data.objects.new("Code-as-Room Capture", mesh)
+    made.extend([copy, mesh])
+    matrix = world_matrix(obj)
+    copy.matrix_basis = matrix
+    _paint(mesh, np.array(matrix, dtype=float)[:3, :3], math.inf if kerb is None else kerb)
+    if kerb is not None:
+        _cut(mesh, kerb)
+    return copy
+
+
+def _paint(mesh: Any, rotation: Any, kerb: float) -> None:
+    """Write the colour of each face to a new active colour attribute; what is cut away is painted like a top."""
+    count = len(mesh.polygons)
+    if not count:
+        return
+    normals = np.empty(3 * count, dtype=np.float32)
+    slots, totals = np.empty(count, dtype=np.int32), np.empty(count, dtype=np.int32)
+    mesh.polygons.foreach_get("normal", normals)
+    mesh.polygons.foreach_get("material_index", slots)
+    mesh.polygons.foreach_get("loop_total", totals)
+    palette = [m.diffuse_color[:3] if m is not None else _DEFAULT_COLOUR for m in mesh.materials] or [_DEFAULT_COLOUR]
+    facing = normals.reshape(-1, 3) @ np.linalg.pinv(rotation)  # normals turn by the inverse transpose
+    facing /= np.maximum(np.linalg.norm(facing, axis=1, keepdims=True), 1e-9)
+    centres = np.empty(3 * count, dtype=np.float32)
+    mesh.polygons.foreach_get("center", centres)
+    facing[centres[2::3] > kerb] = (0.0, 0.0, 1.0)
+    colours = np.array(palette)[np.clip(slots, 0, len(palette) - 1)] * _shade(facing)[:, None]
+    rgba = np.concatenate([colours, np.ones((count, 1))], axis=1).astype(np.float32)
+    attribute = mesh.color_attributes.new("code_as_room_shade", "FLOAT_COLOR", "CORNER")
+    attribute.data.foreach_set("color", np.repeat(rgba, totals, axis=0).ravel())
+    mesh.color_attributes.active_color = attribute
+
+
+def _shade(facing: Any) -> Any:
+    """Factor on linear colour for unit normals: 1 for faces that look up, less for upright ones, least from below."""
+    bright = 0.82 + 0.18 * facing[:, 2] + facing @ _SIDE_LIGHT
+    return np.clip(bright, 0.5, 1.0) ** 2.2
+
+
+def _cut(mesh: Any, height: float) -> None:
+    """Press everything above a height (in the mesh's own frame) down to it."""
+    points = np.empty(3 * len(mesh.vertices), dtype=np.float32)
+    mesh.vertices.foreach_get("co", points)
+    points[2::3] = np.minimum(points[2::3], height)
+    mesh.vertices.foreach_set("co", points)
+    mesh.update()
