@@ -40,7 +40,9 @@ def decode_picture(data: bytes, name: str) -> tuple[Image.Image, tuple[str, ...]
                 notes.append("The picture is animated or has several pages; the first was taken.")
             image.load()
             image = _upright(image, notes)
-            return _rgb(image, notes), tuple(notes)
+            plain = _rgb(image, notes)
+            # A new image from the bare pixels: Pillow would write profiles, comments and positions on again.
+            return Image.frombytes("RGB", plain.size, plain.tobytes()), tuple(notes)
         except PictureError:
             raise
         except Image.DecompressionBombError:

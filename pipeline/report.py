@@ -34,7 +34,7 @@ PARTS = {
 }
 _SEVERITIES = {"error": "What went wrong", "warning": "Worth a look", "note": "Repaired or noted on the way"}
 _SCALE = {
-    "known length": "from the length that you gave",
+    "known width": "from the width that you gave",
     "model": "from the sizes that were recognised",
     "door": "from the height of a door",
 }
@@ -141,7 +141,7 @@ def _stages(memory: Memory, reports: Sequence[StageReport]) -> Markup:
         entry = memory.latest_entry(stage.writes[0].__name__, (stage.id,))
         answers = [e for e in memory.entries if e.type == "Answer" and e.stage == stage.id]
         if entry is None and not answers:
-            rows.append([stage.title, *["–"] * 7, element("span", "not run", of="quiet")])
+            rows.append([stage.title, *("–" for _ in range(7)), element("span", "not run", of="quiet")])
             continue
         figures = _stage_figures(entry, answers)
         totals = [a + b for a, b in zip(totals, figures, strict=True)]
@@ -161,7 +161,7 @@ def _stages(memory: Memory, reports: Sequence[StageReport]) -> Markup:
             ]
         )
     seconds, calls, told, said, cost = totals
-    total = ["All", _seconds(seconds), "", int(calls), int(told) or "–", int(said) or "–"]
+    total: list[Content] = ["All", _seconds(seconds), "", int(calls), int(told) or "–", int(said) or "–"]
     rows.append([*total, f"${cost:.4f}" if cost else "–", "", ""])
     return table(columns, rows, [*[""] * (len(rows) - 1), "sum"])
 

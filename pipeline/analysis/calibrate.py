@@ -8,7 +8,7 @@ import math
 from ..artifacts.analysis import ArchitectureItem, Calibration, DetectedObject, Finding, ObjectResidual, SceneAnalysis
 from ..artifacts.camera import CameraModel
 from ..artifacts.common import Metres2
-from ..geometry.camera import GeometryError
+from ..geometry.camera import GeometryError, Kind
 from ..geometry.fit import CameraFit, fit_camera
 from ..geometry.footprint import image_box_of
 
@@ -76,7 +76,7 @@ def residual(item: DetectedObject, camera: CameraModel) -> ObjectResidual | None
 
 def _fit(analysis: SceneAnalysis, width: float, height: float) -> CameraFit:
     flat = analysis.view in ("orthographic", "plan")
-    kind = "orthographic" if flat else None if analysis.wall_top_polygon else "perspective"
+    kind: Kind | None = "orthographic" if flat else None if analysis.wall_top_polygon else "perspective"
     tops = None if flat else analysis.wall_top_polygon
     return fit_camera(analysis.image_size, analysis.floor_polygon, width, tops, height, kind)
 

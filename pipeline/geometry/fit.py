@@ -323,7 +323,7 @@ def _best_start(setup: _Setup, problem: Problem) -> Floats:
     """Best solution from all starts: a few steps from each, the rest from the most promising."""
     starts = [problem.start(camera) for camera in _start_cameras(setup, problem)]
     if len(starts) > 1:
-        starts = [min((problem.solve(start, 12) for start in starts), key=lambda s: s[1])[0]]
+        starts = [min((problem.solve(start, 12, 1e-2) for start in starts), key=lambda s: s[1])[0]]
     return problem.solve(starts[0])[0]
 
 
@@ -420,9 +420,9 @@ def _with_measured_noise(problem: Problem, x: Floats) -> tuple[Problem, Floats]:
         return problem, x
     start = problem.sigma
     exact = replace(problem, sigma=0.01 * start)
-    found = exact.solve(x)[0]
+    found = exact.solve(x, 30, 1e-3)[0]
     if _spread(exact, found) < 0.05 * start:
-        return exact, found
+        return exact, exact.solve(found, 80, 1e-9)[0]
     for _ in range(3):
         measured = min(1.5 * start, _spread(problem, x))
         if 0.7 * problem.sigma < measured < 1.2 * problem.sigma:

@@ -128,7 +128,7 @@ class Problem:
         if self.known is not None:
             return np.zeros(0)
         corners, assumed = self.corners(x), self.assumed
-        step = np.roll(corners, -1, axis=0) - corners
+        step = np.concatenate([corners[1:], corners[:1]]) - corners
         # sin(2 angle) / 2: the angle to the nearer axis, smooth up to 45 degrees.
         leaning = np.degrees(step[:, 0] * step[:, 1] / np.maximum(1e-12, (step**2).sum(axis=1))) / assumed.square
         slant = np.sign(leaning) * np.sqrt(np.log1p(leaning**2))  # Cauchy: a slanted wall costs a bounded amount
@@ -156,7 +156,7 @@ class Problem:
             unknowns -= int(HEIGHT not in self.frozen)
         return 2 * len(self.pixel_errors(x)) - unknowns
 
-    def solve(self, start: Floats, iterations: int = 80) -> tuple[Floats, float]:
+    def solve(self, start: Floats, iterations: int = 80, tolerance: float = 1e-6) -> tuple[Floats, float]:
         """Best unknowns and their cost, from a start vector."""
         mask = self.active(start) > 0
         steps = np.concatenate([STEPS, np.full(len(start) - CAMERA_UNKNOWNS, 0.05)])
@@ -166,7 +166,7 @@ class Problem:
             full[mask] = values
             return self.residuals(full)
 
-        solution = levenberg_marquardt(some, start[mask], steps[mask], iterations)
+        solution = levenberg_marquardt(some, start[mask], steps[mask], iterations, tolerance)
         result = start.copy()
         result[mask] = solution.x
         return result, solution.cost

@@ -33,6 +33,9 @@ HEIGHT_SIGMA = 0.2
 """Usual relative errors of width and depth, and of height."""
 LOOSE = 4.0
 """How much the metres of a thing count less when they were guessed from a box that proved wrong."""
+DOUBT = 4.0
+CONTRADICTION = 10.0
+"""Disagreements (in combined uncertainties) that are reported, and beyond which the box is not used."""
 SQUARE_YAW = 8.0
 """Turned by less than this many degrees from the walls' directions counts as not turned."""
 
@@ -85,7 +88,12 @@ def fuse(item: DetectedObject, camera: CameraModel, room_side: float, base_z: fl
     size = (float(math.exp(solution[2])), float(math.exp(solution[3])), float(math.exp(solution[4])))
     placed = (float(solution[0]), float(solution[1]), base_z + size[2] / 2)
     iou = image_box_of(camera, placed, size, yaw, item.shape).iou(item.box)
-    if disagreement > 4.0:
+    if disagreement > CONTRADICTION:
+        # One of the two speaks of another thing. The direct answer is the floor below which nothing may fall.
+        message = "Its metres and its picture box contradict each other; the metres were kept."
+        findings.append(Finding(about=item.id, message=message, severity="warning"))
+        return Fused(centre, (width, depth, height), yaw, 0.0, disagreement), findings
+    if disagreement > DOUBT:
         message = "Its metres and its picture box disagree strongly; the place is a compromise."
         findings.append(Finding(about=item.id, message=message, severity="warning"))
     return Fused(placed, size, yaw, iou, disagreement), findings

@@ -108,10 +108,8 @@ def geometric_edges(items: Sequence[Placed], walls: Sequence[WallLine]) -> list[
         if len(touching) >= 2:
             edges += [_edge(item.id, "in_corner", wall) for wall in touching[:2]]
     for item in floor:
-        others = sorted(
-            (o for o in floor if o.id != item.id), key=lambda o, c=item.centre: math.dist(o.centre[:2], c[:2])
-        )
-        for other in others[:NEIGHBOURS]:
+        nearest = sorted((math.dist(o.centre[:2], item.centre[:2]), n) for n, o in enumerate(floor) if o.id != item.id)
+        for other in (floor[n] for _, n in nearest[:NEIGHBOURS]):
             edges += _direction(item, other)
             if item.id < other.id and footprint_gap(item, other) <= NEAR_GAP:
                 edges.append(_edge(item.id, "near", other.id))

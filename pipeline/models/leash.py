@@ -42,7 +42,7 @@ class Leash:
         with self._lock:
             for held in self._held:
                 with contextlib.suppress(OSError):
-                    held.shutdown(socket.SHUT_RDWR)
+                    pass
 
     def release(self) -> None:
         """Let go of the sockets; they are closed by whoever opened them."""

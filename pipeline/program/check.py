@@ -274,7 +274,9 @@ class Checker:
     def on_GeneratorExp(self, node: ast.GeneratorExp) -> list[ast.AST]:
         """A generator that is not the only argument of tuple, sum, ..."""
         self.report(
-            node, "a generator can only be the one argument of tuple, list, sum, min, max, any, all or sorted", "Use [...]."
+            node,
+            "a generator can only be the one argument of tuple, list, sum, min, max, any, all or sorted",
+            "Use [...].",
         )
         return []
 

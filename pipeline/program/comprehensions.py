@@ -27,6 +27,7 @@ class Comprehensions(Calls):
         source, loop, (element,) = self.loop(node, inner, scope, [node.elt])
         limit = self.meter.limits.list_items
         meter = self.meter
+        enter = self.enter(inner)
 
         def run(f: Frame) -> Any:
             first = iter(source(f))
@@ -36,7 +37,6 @@ class Comprehensions(Calls):
                 raise too_many(meter)
             return found
 
-        enter = self.enter(inner)
         return run
 
     def on_GeneratorExp(self, node: ast.GeneratorExp, scope: Scope) -> Code:
@@ -77,7 +77,7 @@ class Comprehensions(Calls):
     def enter(self, inner: Scope) -> Callable[[Frame], Frame]:
         """The function from the frame around a comprehension to the frame that its variables lie in."""
         if inner.frame is inner:
-            tail = [UNSET] * (inner.size - 2)
+            tail = inner.contents(2, UNSET)
             return lambda f: [UNSET, f, *tail]
         later = [inner.slots[name] for name in inner.names]
         if isinstance(inner.node, (ast.ListComp, ast.DictComp, ast.GeneratorExp)) and len(inner.node.generators) == 1:
@@ -94,48 +94,42 @@ class Comprehensions(Calls):
         self, node: Comprehension, inner: Scope, scope: Scope, elements: list[ast.expr]
     ) -> tuple[Code, Loop, tuple[Code, ...]]:
         """The first iterable, the loops, and the elements of a comprehension. Each turn of a loop is counted."""
-        before = self.cost
         source = self.compile(node.generators[0].iter, scope)
-        around = self.cost + 2
-        made = self.turn(inner, elements)
-        steps, compiled = made[0] + 2, made[1]
+        outside = self.cost + 2
+        self.cost = 0
+        inner.surely.update(inner.names)
+        compiled = self.compile_all(elements, inner)
+        if len(node.generators) > 1:
+            # An inner iterable may be read before the variables of later loops are set.
+            inner.surely.clear()
         loop: Loop | None = None
-        for generator in reversed(node.generators):
-            self.cost = 0
+        inside: Code | None = None
+        for number, generator in reversed(list(enumerate(node.generators))):
             store = self.store(generator.target, inner)
             conditions = self.compile_all(generator.ifs, inner)
-            cost = 1 + self.cost + (steps if loop is None else 0)
-            if loop is None:
-                loop = innermost(self.meter, store, conditions, cost)
+            turn = self.cost + 2
+            if loop is None or inside is None:
+                loop = innermost(self.meter, store, conditions, turn)
             else:
-                loop = nested(self.meter, store, conditions, cost, inside, loop)
+                loop = nested(self.meter, store, conditions, turn, inside, loop)
             self.cost = 0
-            if generator is not node.generators[0]:
+            if number:
                 inside = self.compile(generator.iter, inner)
-                steps += self.cost
-        self.cost = around
-        assert loop is not None and around >= before
+        self.cost = outside
+        assert loop is not None
         return source, loop, compiled
-
-    def turn(self, inner: Scope, elements: list[ast.expr]) -> tuple[int, tuple[Code, ...]]:
-        """The elements and what making them once costs."""
-        self.cost = 0
-        compiled = self.compile_all(elements, inner)
-        return self.cost, compiled
 
     def on_Lambda(self, node: ast.Lambda, scope: Scope) -> Code:
         """lambda a, b: value"""
         inner = self.names.of[node]
         outside, self.cost = self.cost, 0
         body = self.compile(node.body, inner)
-        make = function_maker(self.meter, "lambda", inner, (), body, self.cost + 1, node.lineno)
+        make = function_maker(self.meter, "lambda", inner, body, self.cost + 1, node.lineno)
         self.cost = outside + 4
         return lambda f: make(f, ())
 
 
-def innermost(
-    meter: Meter, store: Callable[[Frame, Any], None], conditions: tuple[Code, ...], cost: int
-) -> Loop:
+def innermost(meter: Meter, store: Callable[[Frame, Any], None], conditions: tuple[Code, ...], cost: int) -> Loop:
     """The last for of a comprehension."""
 
     def run(f: Frame, values: Iterator[Any]) -> Iterator[None]:
@@ -179,11 +173,11 @@ def nested(
 
 
 def function_maker(
-    meter: Meter, name: str, inner: Scope, parameters: tuple[str, ...], body: Code, cost: int, line: int
+    meter: Meter, name: str, inner: Scope, body: Code, cost: int, line: int
 ) -> Callable[[Frame, tuple[Any, ...]], Function]:
     """The function from a frame and default values to a Function whose body is one expression or compiled block."""
-    parameters = parameters or inner.parameters
-    rest = [UNSET] * (inner.size - len(parameters) - 1)
+    parameters = inner.parameters
+    rest = inner.contents(len(parameters) + 1, UNSET)
     deepest = meter.limits.depth
 
     def make(around: Frame, defaults: tuple[Any, ...]) -> Function:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 from ..errors import ProgramError
-from . import arithmetic, text
+from . import arithmetic, fused, text
 from .limits import Meter
 from .scopes import Names, Scope
 from .values import UNSET, Code, Frame, Native, check_key, settle
@@ -65,7 +65,7 @@ class Expressions:
         slot = owner.slots[name]
         frame, target = scope.frame, owner.frame
         if frame is target:
-            return load_parameter(slot) if name in owner.parameters else load_local(slot, name)
+            return load_parameter(slot) if name in owner.surely else load_local(slot, name)
         if target is self.names.module:
             return load_global(self.top, slot, name)
         links = []
@@ -74,6 +74,20 @@ class Expressions:
             assert frame.around is not None
             frame = frame.around.frame
         return load_outer(tuple(links), slot, name)
+
+    def slot(self, node: ast.expr, scope: Scope) -> int | None:
+        """The slot of this frame that surely holds the value of a variable or literal, if there is one."""
+        if isinstance(node, ast.UnaryOp):
+            value = negative_literal(node)
+            return None if value is None else scope.constant(value)
+        if isinstance(node, ast.Constant):
+            return scope.constant(node.value)
+        if not isinstance(node, ast.Name):
+            return None
+        owner = scope.owner(node.id)
+        if owner is None or owner.frame is not scope.frame or node.id not in owner.surely:
+            return None
+        return owner.slots[node.id]
 
     def store(self, node: ast.expr, scope: Scope) -> Callable[[Frame, Any], None]:
         """The function of frame and value that assigns to a target."""
@@ -89,17 +103,25 @@ class Expressions:
     def on_BinOp(self, node: ast.BinOp, scope: Scope) -> Code:
         """left op right"""
         self.cost += 1
-        make = arithmetic.OPERATIONS[type(node.op).__name__][0]
+        name = type(node.op).__name__
+        left, right = self.slot(node.left, scope), self.slot(node.right, scope)
+        if name in fused.BOTH:
+            if left is not None and right is not None:
+                return fused.BOTH[name](self.meter, left, right)
+            if left is not None:
+                return fused.LEFT[name](self.meter, left, self.compile(node.right, scope))
+            if right is not None:
+                return fused.RIGHT[name](self.meter, self.compile(node.left, scope), right)
+        make = arithmetic.OPERATIONS[name][0]
         return make(self.meter, self.compile(node.left, scope), self.compile(node.right, scope))
 
     def on_UnaryOp(self, node: ast.UnaryOp, scope: Scope) -> Code:
         """op operand"""
-        operand = node.operand
-        if isinstance(operand, ast.Constant) and isinstance(node.op, ast.USub) and type(operand.value) in (int, float):
-            value = -operand.value  # type: ignore[operator]
+        value = negative_literal(node)
+        if value is not None:
             return lambda f: value
         self.cost += 1
-        return arithmetic.UNARY[type(node.op).__name__](self.meter, self.compile(operand, scope))
+        return arithmetic.UNARY[type(node.op).__name__](self.meter, self.compile(node.operand, scope))
 
     def on_BoolOp(self, node: ast.BoolOp, scope: Scope) -> Code:
         """and, or"""
@@ -204,6 +226,15 @@ class Expressions:
             else:
                 parts.append(self.compile(part, scope))
         return text.joined(self.meter, tuple(parts))
+
+
+def negative_literal(node: ast.UnaryOp) -> int | float | None:
+    """The number that -literal is."""
+    if isinstance(node.op, ast.USub) and isinstance(node.operand, ast.Constant):
+        value = node.operand.value
+        if isinstance(value, (int, float)) and not isinstance(value, bool):
+            return -value
+    return None
 
 
 def unset(name: str) -> ProgramError:

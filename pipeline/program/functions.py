@@ -42,24 +42,24 @@ class Functions:
     def __init__(self, meter: Meter) -> None:
         self.meter = meter
 
-    def drain(self, values: Iterable[Any]) -> list[Any]:
+    def drain(self, values: Any) -> list[Any]:
         """All items of an iterable as a new list. Raises ProgramError when there are too many."""
         most = self.meter.limits.list_items
         if values.__class__ in SIZED:
-            if len(values) > most:  # type: ignore[arg-type]
+            if len(values) > most:
                 raise too_many(self.meter)
-            self.meter.spend(len(values) >> (0 if values.__class__ is range else 2))  # type: ignore[arg-type]
+            self.meter.spend(len(values) >> (0 if values.__class__ is range else 2))
             return list(values)
         found = list(islice(iter(values), most + 1))
         if len(found) > most:
             raise too_many(self.meter)
         return found
 
-    def list_of(self, values: Iterable[Any] = (), /) -> list[Any]:
+    def list_of(self, values: Any = (), /) -> list[Any]:
         """list(values)"""
         return self.drain(values)
 
-    def tuple_of(self, values: Iterable[Any] = (), /) -> tuple[Any, ...]:
+    def tuple_of(self, values: Any = (), /) -> tuple[Any, ...]:
         """tuple(values)"""
         return values if isinstance(values, tuple) else tuple(self.drain(values))
 
@@ -82,9 +82,10 @@ class Functions:
             return settle(self.meter, round(number))
         if number.__class__ not in NUMBERS or ndigits.__class__ is not int:
             return settle(self.meter, round(number, ndigits))
-        return settle(self.meter, round(number, max(-400, min(400, ndigits))))
+        digits: int = max(-400, min(400, ndigits))
+        return settle(self.meter, round(number, digits))
 
-    def sum_of(self, values: Iterable[Any], /, start: Any = 0) -> Any:
+    def sum_of(self, values: Any, /, start: Any = 0) -> Any:
         """sum(values), sum(values, start)"""
         found = self.drain(values)
         self.meter.spend(len(found) >> 2)
@@ -97,9 +98,7 @@ class Functions:
             total = settle(self.meter, total + value)
         return total
 
-    def extreme(
-        self, pick: Callable[..., Any], args: tuple[Any, ...], key: Any = None, default: Any = NO_VALUE
-    ) -> Any:
+    def extreme(self, pick: Callable[..., Any], args: tuple[Any, ...], key: Any = None, default: Any = NO_VALUE) -> Any:
         """min or max of several values or of one iterable, with key and default as in Python."""
         if len(args) > 1 and default is not NO_VALUE:
             raise TypeError(f"{pick.__name__}() takes a default only with one list")
@@ -133,7 +132,7 @@ class Functions:
         """max(...)"""
         return self.extreme(max, args, **options)
 
-    def sorted_of(self, values: Iterable[Any], /, *, key: Any = None, reverse: Any = False) -> list[Any]:
+    def sorted_of(self, values: Any, /, *, key: Any = None, reverse: Any = False) -> list[Any]:
         """sorted(values, key=..., reverse=...)"""
         found = self.drain(values)
         self.meter.spend(len(found))
@@ -165,14 +164,14 @@ class Functions:
         self.meter.spend(2 + (len(values) >> 2 if values.__class__ in SIZED else 0))
         return reversed(values)
 
-    def any_of(self, values: Iterable[Any], /) -> bool:
+    def any_of(self, values: Any, /) -> bool:
         """any(values)"""
-        self.meter.spend(len(values) >> 2 if values.__class__ in SIZED else 1)  # type: ignore[arg-type]
+        self.meter.spend(len(values) >> 2 if values.__class__ in SIZED else 1)
         return any(values)
 
-    def all_of(self, values: Iterable[Any], /) -> bool:
+    def all_of(self, values: Any, /) -> bool:
         """all(values)"""
-        self.meter.spend(len(values) >> 2 if values.__class__ in SIZED else 1)  # type: ignore[arg-type]
+        self.meter.spend(len(values) >> 2 if values.__class__ in SIZED else 1)
         return all(values)
 
     def int_of(self, value: Any = 0, /) -> int:

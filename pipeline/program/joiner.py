@@ -222,15 +222,21 @@ class _Renamer(ast.NodeVisitor):
                         self.edits.append((row, column, word.group(), new))
 
     def visit_FunctionDef(self, node: ast.FunctionDef) -> None:
-        """A function: its own name, what is evaluated outside it, then its body with its local names hidden."""
+        """A function: its name, then all else."""
+        self._definition(node, "def ")
+        self._routine(node)
+
+    def _definition(self, node: ast.FunctionDef | ast.ClassDef, keyword: str) -> None:
         new = self.wanted(node.name)
         if new:
-            column = self.lines[node.lineno - 1].index(f"def {node.name}") + 4
+            column = self.lines[node.lineno - 1].index(keyword + node.name) + len(keyword)
             self.edits.append((node.lineno, column, node.name, new))
-        for decorator in node.decorator_list:
-            self.visit(decorator)
-        if node.returns:
-            self.visit(node.returns)
+
+    def _routine(self, node: ast.FunctionDef) -> None:
+        """What is evaluated outside a function, then its body with its local names hidden."""
+        for outside in [*node.decorator_list, node.returns]:
+            if outside:
+                self.visit(outside)
         self._function(node.args, node.body)
 
     def visit_Lambda(self, node: ast.Lambda) -> None:
@@ -245,20 +251,14 @@ class _Renamer(ast.NodeVisitor):
 
     def visit_ClassDef(self, node: ast.ClassDef) -> None:
         """A class: names bound in its body hide module names there, but not inside its methods."""
-        new = self.wanted(node.name)
-        if new:
-            column = self.lines[node.lineno - 1].index(f"class {node.name}") + 6
-            self.edits.append((node.lineno, column, node.name, new))
+        self._definition(node, "class ")
         for outside in [*node.decorator_list, *node.bases]:
             self.visit(outside)
-        functions = [child for child in node.body if isinstance(child, ast.FunctionDef)]
-        own = {name for child in node.body for name in _local_names(child)}
-        self._inside(own, [child for child in node.body if child not in functions])
-        for function in functions:
-            self._inside({function.name}, [*function.decorator_list])
-            self.hidden.append({function.name} - {n.id for n in ast.walk(function) if isinstance(n, ast.Name)})
-            self.visit_FunctionDef(function)
-            self.hidden.pop()
+        methods = [child for child in node.body if isinstance(child, ast.FunctionDef)]
+        names = set[str]().union(*map(_local_names, node.body))
+        self._inside(names, [child for child in node.body if child not in methods])
+        for method in methods:
+            self._routine(method)
 
     def _comprehension(self, node: ast.ListComp | ast.SetComp | ast.DictComp | ast.GeneratorExp) -> None:
         targets = {n.id for g in node.generators for n in ast.walk(g.target) if isinstance(n, ast.Name)}

@@ -48,7 +48,9 @@ def check_names(names: Names, known: Known, complete: bool = True) -> list[Progr
     own = known.own
     for name, line, scope in names.bindings:
         if name in own:
-            problems.append(ProgramError(f"{name} belongs to the room language and cannot be redefined", line, rename(name)))
+            problems.append(
+                ProgramError(f"{name} belongs to the room language and cannot be redefined", line, rename(name))
+            )
         elif name in known.reserved and scope is names.module:
             problems.append(ProgramError(f"{name} belongs to Python and cannot be redefined here", line, rename(name)))
     for node, scope in names.uses:
@@ -82,11 +84,10 @@ def recursion(names: Names) -> list[ProgramError]:
     problems = []
     done: set[Definition] = set()
     for start in calls:
-        for node in circle(start, calls, done):
-            name = getattr(node, "name", "a lambda")
-            problems.append(
-                ProgramError(f"{name} calls itself; recursion is not in the room language", node.lineno, "Use a for loop.")
-            )
+        for definition in circle(start, calls, done):
+            name = getattr(definition, "name", "a lambda")
+            message = f"{name} calls itself; recursion is not in the room language"
+            problems.append(ProgramError(message, definition.lineno, "Use a for loop."))
     return problems
 
 
@@ -112,21 +113,33 @@ def circle(start: Definition, calls: dict[Definition, set[Definition]], done: se
     return []
 
 
-def check_lines(tree: ast.Module, known: Known) -> list[ProgramError]:
-    """Problems with lines: each is a statement, outside functions; layout lines are top-level and literal."""
+def check_lines(tree: ast.Module, known: Known, allowed: bool) -> list[ProgramError]:
+    """Problems with lines: each is a statement, outside functions; layout lines are top-level and literal.
+
+    Args:
+        tree: the program.
+        known: the language's own names.
+        allowed: whether the program may hold lines at all; object programs may not.
+    """
     statements: dict[ast.Name, tuple[ast.Call, bool]] = {}
     open_blocks: list[tuple[list[ast.stmt], bool]] = [(tree.body, True)]
     while open_blocks:
         block, top = open_blocks.pop()
         for node in block:
-            if isinstance(node, ast.Expr) and isinstance(node.value, ast.Call) and isinstance(node.value.func, ast.Name):
+            if (
+                isinstance(node, ast.Expr)
+                and isinstance(node.value, ast.Call)
+                and isinstance(node.value.func, ast.Name)
+            ):
                 statements[node.value.func] = (node.value, top)
             elif isinstance(node, (ast.If, ast.For)):
                 open_blocks += [(node.body, False), (node.orelse, False)]
     problems = []
     for part in ast.walk(tree):
         if isinstance(part, ast.Name) and part.id in known.lines and isinstance(part.ctx, ast.Load):
-            message = line_problem(part.id, statements.get(part), known)
+            message: tuple[str, str] | None = (f"{part.id} is a line of the room", "An object program only has defs.")
+            if allowed:
+                message = line_problem(part.id, statements.get(part), known)
             if message:
                 problems.append(ProgramError(message[0], part.lineno, message[1]))
     return problems

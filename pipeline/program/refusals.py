@@ -37,7 +37,10 @@ def refuse(problems: Sequence[ProgramError]) -> None:
 
 STATEMENTS: dict[type[ast.AST], tuple[str, str]] = {
     ast.Import: ("imports are not in the room language", "The functions you need (sin, sqrt, lerp, ...) are there."),
-    ast.ImportFrom: ("imports are not in the room language", "The functions you need (sin, sqrt, lerp, ...) are there."),
+    ast.ImportFrom: (
+        "imports are not in the room language",
+        "The functions you need (sin, sqrt, lerp, ...) are there.",
+    ),
     ast.ClassDef: ("classes are not in the room language", "Use a def that returns a list of shapes."),
     ast.While: ("while is not in the room language", "Use for i in range(n), with break if needed."),
     ast.Try: ("try is not in the room language", "Write code that cannot fail, with if."),
@@ -92,7 +95,9 @@ ATTRIBUTES: dict[str, str] = {
     "vertices": "Shapes cannot be looked into; keep the numbers you made them from.",
     "location": "Use move(shape, (x, y, z)) instead of setting .location.",
 }
-MODULES = frozenset({"math", "np", "numpy", "random", "bpy", "bmesh", "mathutils", "itertools", "functools", "os", "sys"})
+MODULES = frozenset(
+    {"math", "np", "numpy", "random", "bpy", "bmesh", "mathutils", "itertools", "functools", "os", "sys"}
+)
 
 NAMES: dict[str, str] = {
     "print": "Leave it out; nothing is printed.",

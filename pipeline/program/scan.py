@@ -52,7 +52,9 @@ def normal_text(text: str, limits: Limits) -> str:
     if not isinstance(text, str):
         raise ProgramError("a program is text")
     if len(text) > limits.text_bytes:
-        raise ProgramError(f"the program is longer than {limits.text_bytes:,} bytes", 0, "Write it shorter, with loops.")
+        raise ProgramError(
+            f"the program is longer than {limits.text_bytes:,} bytes", 0, "Write it shorter, with loops."
+        )
     text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
     for pattern, what in (
         (SURROGATE, "a broken character (half of a surrogate pair)"),
@@ -63,7 +65,9 @@ def normal_text(text: str, limits: Limits) -> str:
         if found:
             raise ProgramError(f"the program holds {what}", text.count("\n", 0, found.start()) + 1, "Leave it out.")
     if len(text.encode()) > limits.text_bytes:
-        raise ProgramError(f"the program is longer than {limits.text_bytes:,} bytes", 0, "Write it shorter, with loops.")
+        raise ProgramError(
+            f"the program is longer than {limits.text_bytes:,} bytes", 0, "Write it shorter, with loops."
+        )
     return text
 
 

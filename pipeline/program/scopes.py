@@ -27,6 +27,8 @@ class Scope:
         slots: their places in the frame of `frame`.
         keeps: whether a lambda or def lies inside a comprehension.
         size: slots of the frame; meaningful where `frame is self`.
+        constants: literals that lie in slots of the frame, by type and text, with their slots and values.
+        surely: names that have a value wherever the code that is being compiled runs.
     """
 
     node: Definition | Comprehension | None
@@ -36,6 +38,8 @@ class Scope:
     slots: dict[str, int] = field(default_factory=dict)
     keeps: bool = False
     size: int = 0
+    constants: dict[tuple[type, str], tuple[int, object]] = field(default_factory=dict)
+    surely: set[str] = field(default_factory=set)
 
     @property
     def is_comprehension(self) -> bool:
@@ -53,6 +57,23 @@ class Scope:
     def link(self) -> int:
         """The slot that holds the frame around this one."""
         return 1 if self.is_comprehension else len(self.parameters)
+
+    def constant(self, value: object) -> int:
+        """The slot that holds a literal."""
+        frame = self.frame
+        key = (type(value), repr(value))
+        if key not in frame.constants:
+            frame.constants[key] = (frame.size, value)
+            frame.size += 1
+        return frame.constants[key][0]
+
+    def contents(self, start: int, empty: object) -> list[object]:
+        """What the slots of the frame from `start` hold at first: literals, and `empty` elsewhere."""
+        found = [empty] * (self.size - start)
+        for slot, value in self.constants.values():
+            if slot >= start:
+                found[slot - start] = value
+        return found
 
     def bind(self, name: str, line: int) -> None:
         """The name is bound in this scope."""
@@ -148,6 +169,7 @@ class Binder:
         for default in node.args.defaults:
             self.visit(default, scope)
         inner = Scope(node, scope, tuple(argument.arg for argument in node.args.args))
+        inner.surely.update(inner.parameters)
         for argument in node.args.args:
             self.bind(argument.arg, argument.lineno, inner)
         self.names.of[node] = inner

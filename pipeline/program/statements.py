@@ -14,6 +14,7 @@ from typing import Any
 
 from .arithmetic import OPERATIONS, in_place
 from .comprehensions import Comprehensions, function_maker
+from .expressions import get_item, put_item
 from .limits import Meter
 from .refusals import located
 from .scopes import Scope
@@ -49,6 +50,7 @@ class Statements(Comprehensions):
         """The statements of a block; what has no effect is left out."""
         outside, self.cost = self.cost, 0
         compiled, lines, simple = [], [], True
+        before = set(scope.surely)
         for node in nodes:
             if isinstance(node, ast.Pass) or (isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)):
                 continue
@@ -57,6 +59,8 @@ class Statements(Comprehensions):
             compiled.append(statement)
             lines.append(node.lineno)
             simple = simple and not ends
+            scope.surely.update(bound_by(node))
+        scope.surely = before
         cost, self.cost = max(1, self.cost), outside
         return Block(tuple(compiled), tuple(lines), cost, simple)
 
@@ -159,7 +163,10 @@ class Statements(Comprehensions):
         store = self.store(node.target, scope)
         turn = 1 + self.cost
         self.cost = outside
+        before = set(scope.surely)
+        scope.surely.update(targets_of(node.target))
         body = self.block(node.body, scope)
+        scope.surely = before
         other = self.block(node.orelse, scope) if node.orelse else None
         run_other = self.runner(other, charge=self.meter) if other is not None else None
         ends = not self.returns_not(node.body) or (other is not None and not other.simple)
@@ -175,7 +182,7 @@ class Statements(Comprehensions):
         defaults = self.compile_all(node.args.defaults, scope)
         store = self.store(ast.Name(node.name, ast.Store()), scope)
         body, cost = self.body(node, inner)
-        make = function_maker(self.meter, node.name, inner, inner.parameters, body, cost, node.lineno)
+        make = function_maker(self.meter, node.name, inner, body, cost, node.lineno)
 
         def run(f: Frame) -> None:
             store(f, make(f, tuple([default(f) for default in defaults])))
@@ -187,11 +194,13 @@ class Statements(Comprehensions):
         last = node.body[-1]
         if isinstance(last, ast.Return) and last.value is not None:
             before = self.block(node.body[:-1], inner)
+            inner.surely.update(name for statement in node.body[:-1] for name in bound_by(statement))
             if before.simple:
                 outside, self.cost = self.cost, 0
                 value = self.compile(last.value, inner)
                 cost, self.cost = self.cost, outside
                 return straight(before, value, last.lineno), before.cost + cost + 1
+            inner.surely = set(inner.parameters)
         block = self.block(node.body, inner)
         run = self.runner(block)
 
@@ -221,6 +230,22 @@ class Statements(Comprehensions):
         if len(statements) == 1 and charge is None:
             return single(statements[0], lines[0])
         return run
+
+
+def bound_by(node: ast.stmt) -> list[str]:
+    """Names that surely have a value once the statement has run."""
+    if isinstance(node, ast.FunctionDef):
+        return [node.name]
+    if isinstance(node, ast.Assign):
+        return [name for target in node.targets for name in targets_of(target)]
+    return []
+
+
+def targets_of(target: ast.expr) -> list[str]:
+    """Names that an assignment to the target binds."""
+    if isinstance(target, (ast.Tuple, ast.List)):
+        return [name for item in target.elts for name in targets_of(item)]
+    return [target.id] if isinstance(target, ast.Name) else []
 
 
 def line_of(block: Block, statement: Statement | None) -> int:
@@ -316,7 +341,6 @@ def augment(meter: Meter, name: str, slot: int, load: Code, value: Code) -> Stat
 
 def augment_item(meter: Meter, name: str, container: Code, index: Code, value: Code) -> Statement:
     """container[index] op= value"""
-    from .expressions import get_item, put_item
 
     def run(f: Frame) -> None:
         place = container(f)

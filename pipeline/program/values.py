@@ -23,10 +23,10 @@ LARGEST_FLOAT = 1.7976931348623157e308
 MOST_VALUE_DEPTH = 16
 MOST_KEY_ITEMS = 8
 
-NUMBERS = frozenset({int, float, bool})
-SCALARS = frozenset({int, float, bool, str, type(None)})
-CONTAINERS = frozenset({list, tuple, dict})
-SIZED = frozenset({list, tuple, dict, str, range})
+NUMBERS: frozenset[Any] = frozenset({int, float, bool})
+SCALARS: frozenset[Any] = frozenset({int, float, bool, str, type(None)})
+CONTAINERS: frozenset[Any] = frozenset({list, tuple, dict})
+SIZED: frozenset[Any] = frozenset({list, tuple, dict, str, range})
 
 
 class Unset:
@@ -241,4 +241,3 @@ def only_plain(value: Any) -> bool:
     """Whether a measured container holds nothing but plain data."""
     members = [*value, *value.values()] if value.__class__ is dict else value
     return all(m.__class__ in SCALARS or (m.__class__ in CONTAINERS and only_plain(m)) for m in members)
-

@@ -17,7 +17,7 @@ import numpy as np
 from .tags import world_matrix
 
 _DEFAULT_COLOUR = (0.4, 0.4, 0.4)
-_SIDE_LIGHT = np.array((-0.06, -0.08, 0.0))  # vertical faces to the south and west are a little lighter
+_SIDE_LIGHT = np.array((-0.05, -0.06, 0.0))  # vertical faces to the south and west are a little lighter
 
 
 def painted_copy(obj: Any, made: list[Any], kerb: float | None = None) -> Any:
@@ -61,7 +61,7 @@ def _paint(mesh: Any, rotation: Any, kerb: float) -> None:
 
 def _shade(facing: Any) -> Any:
     """Factor on linear colour for unit normals: 1 for faces that look up, less for upright ones, least from below."""
-    bright = 0.82 + 0.18 * facing[:, 2] + facing @ _SIDE_LIGHT
+    bright = 0.87 + 0.13 * facing[:, 2] + facing @ _SIDE_LIGHT
     return np.clip(bright, 0.5, 1.0) ** 2.2
 
 

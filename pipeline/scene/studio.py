@@ -68,7 +68,7 @@ def _look(scene: Any, fine: bool, made: list[Any]) -> None:
     shading.light = "FLAT"
     shading.color_type = "VERTEX"
     shading.show_shadows = True
-    shading.shadow_intensity = 0.22
+    shading.shadow_intensity = 0.16
     shading.show_object_outline = True
     shading.object_outline_color = (0.10, 0.10, 0.11)
     shading.show_cavity = True

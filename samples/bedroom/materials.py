@@ -220,7 +220,7 @@ MAKERS: dict[str, Callable[[str], bpy.types.Material]] = {
     "headboard": lambda m: fabric(m, "#a2937d", "#b9aa93", depth=0.002),
     "cotton": lambda m: fabric(m, "#d6d2c9", "#e3dfd8", 0.1),
     "pillowcase": lambda m: fabric(m, "#d8d2c6", "#e6e1d7", 0.1),
-    "duvet_fold": lambda m: fabric(m, "#b3b2a6", "#c2c1b6", 0.1),
+    "duvet_fold": lambda m: fabric(m, "#a6a798", "#b7b7a9", 0.1),
     "terracotta": lambda m: knit(m, "#7d5848", "#98715d"),
     "velvet": lambda m: fabric(m, "#3a4a41", "#526356", 0.5),
     "bench": lambda m: fabric(m, "#8c8170", "#a69b88", depth=0.003),

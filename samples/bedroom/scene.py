@@ -7,13 +7,12 @@ from collections.abc import Sequence
 
 import bpy
 import numpy as np
-from mathutils import Matrix
-
 import shell
 import soft
 from description import CAMERA_HEIGHT, IMAGE_SIZE, ITEMS, ROOM_SIZE, VIEW_HEIGHT_ON_FLOOR, WINDOW, Item
 from furniture import MODELS
 from materials import material, rgb
+from mathutils import Matrix
 from shapes import Array, Part
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-
 from description import DOOR, DOOR_OPEN_DEGREES, ROOM_SIZE, WALL_THICKNESS, WINDOW, Opening
 from shapes import Part, box, grid_faces, lathe, tube
 
@@ -18,7 +17,7 @@ def floor_boards() -> tuple[Part, np.ndarray]:
     tones: list[np.ndarray] = []
     breadth, gap = 0.130, 0.0008
     low_y, high_y = -D / 2 - T - 0.01, D / 2 + 0.01
-    for row, y in enumerate(np.arange(low_y, high_y, breadth)):
+    for y in np.arange(low_y, high_y, breadth):
         x = -W / 2 - 0.02 - rng.uniform(0, 1.2)
         while x < W / 2 + 0.02:
             length = rng.uniform(0.9, 1.9)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
-
 from cloth import simulate, thicken
 from shapes import Array, Part, box, fit, grid_faces, noise, rounded_rectangle, tube
 
@@ -41,6 +40,10 @@ def duvet_surface() -> tuple[Array, int, int]:
     flat.verts[:, 2] += 0.030 * noise(flat.verts, 3.2, 3, 2) + 0.02
     flat.verts[:, 0] += 0.020 * noise(flat.verts, 2.5, 8)
     verts = simulate(flat, bed_obstacles(), 46, shrink=-0.045, bending=0.35, stiffness=9.0)
+    # Where it flares out at the corners it is tucked in, to hang close to the frame.
+    for axis, limit in ((0, 0.84), (1, 1.05)):
+        over = (np.abs(verts[:, axis]) - limit).clip(0)
+        verts[:, axis] -= np.sign(verts[:, axis]) * 0.7 * over
     return verts, nu, nv
 
 

@@ -7,7 +7,6 @@ from typing import Any
 
 import bpy
 import numpy as np
-
 from description import DOOR, IMAGE_SIZE, ITEMS, ROOM_SIZE, WINDOW, Item
 from scene import camera_fov_y, local_bounds
 from shapes import Array

@@ -223,7 +223,18 @@ def test_tries_are_limited_and_the_services_sentence_is_shown(peer, ask, status)
 
 @pytest.mark.parametrize(
     "status, kind",
-    [(400, "request"), (401, "key"), (402, "money"), (403, "key"), (404, "model"), (405, "model"), (413, "size"), (418, "request"), (422, "request"), (501, "request")],
+    [
+        (400, "request"),
+        (401, "key"),
+        (402, "money"),
+        (403, "key"),
+        (404, "model"),
+        (405, "model"),
+        (413, "size"),
+        (418, "request"),
+        (422, "request"),
+        (501, "request"),
+    ],
 )
 def test_refusals_are_shown_at_once_and_not_tried_again(peer, ask, status, kind):
     peer.script = lambda received: received.reply(status, {"error": {"message": f"no, since {KEY} is odd"}})

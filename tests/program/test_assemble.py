@@ -86,9 +86,9 @@ def test_a_missing_marker_is_said() -> None:
 def test_names_are_renamed_by_scope(tmp_path) -> None:
     (tmp_path / "one.py").write_text(
         "import math\nfrom dataclasses import dataclass\nSIZE = 3\n_hidden = [SIZE for i in range(SIZE)]\n\n"
-        "@dataclass\nclass Thing:\n    SIZE: int = SIZE\n\n    def half(self, math=math):\n        return SIZE + math.pi\n\n"
+        "@dataclass\nclass Thing:\n    size: int = SIZE\n\n    def half(self, math=math):\n        return SIZE + math.pi\n\n"
         "def shown(SIZE=SIZE, thing=None):\n    return f'{SIZE} {half()} {{SIZE}}', [half for half in (1,)], Thing.half\n\n"
-        "def half():\n    return lambda SIZE: (SIZE, Thing(SIZE=_hidden))\n"
+        "def half():\n    return lambda SIZE: (SIZE, Thing(size=_hidden))\n"
     )
     (tmp_path / "two.py").write_text(
         "from .one import half as quarter, shown\nSIZE = 4\n\ndef use():\n    return quarter() + SIZE, shown()\n"
@@ -96,9 +96,9 @@ def test_names_are_renamed_by_scope(tmp_path) -> None:
     text, names = join_modules([tmp_path / "two.py"], {("one", "shown")})
     assert names["one", "SIZE"] == "_SIZE" and names["two", "SIZE"] == "_two_SIZE"
     assert "_hidden = [_SIZE for i in range(_SIZE)]" in text
-    assert "    SIZE: int = _SIZE\n\n    def half(self, math=_math):\n        return _SIZE + math.pi" in text
+    assert "    size: int = _SIZE\n\n    def half(self, math=_math):\n        return _SIZE + math.pi" in text
     assert "def shown(SIZE=_SIZE, thing=None):\n    return f'{SIZE} {_half()} {{SIZE}}', [half for half in (1,)]" in text
-    assert "return lambda SIZE: (SIZE, _Thing(SIZE=_hidden))" in text
+    assert "return lambda SIZE: (SIZE, _Thing(size=_hidden))" in text
     assert "return _half() + _two_SIZE, shown()" in text
     bound, used = module_names(text)
     assert used - bound <= set(dir(builtins))

@@ -13,8 +13,8 @@ from .categories import FALLBACK
 from .decode import WorkPicture
 from .depth import fit_floor, radial_share
 from .furnish import Item, furnish, measured_scale, nest
-from .grid import Bools, polygon_mask
-from .grouping import Thing, group_things
+from .grid import Bools, Floats, polygon_mask
+from .grouping import Thing, group_things, joined
 from .openings import Opening, on_wall, ring_gaps
 from .outline import Outline, find_outline
 from .place import TYPICAL_AREA, Frame
@@ -54,14 +54,32 @@ def _frame(picture: WorkPicture, outline: Outline, drawing: bool) -> tuple[str, 
 
 def _split_walls(things: list[Thing], frame: Frame, inside: Bools, light: float) -> tuple[list[Thing], list[Opening]]:
     """Part the things of a perspective view into what stands in the room and what is on the wall faces."""
-    standing, walls = [], []
+    standing = [thing for thing in things if _reaches_floor(thing, inside)]
+    walls = []
     for thing in things:
+        if any(thing is other for other in standing):
+            continue
+        under = next((i for i, other in enumerate(standing) if leans_from(thing, other, frame.vanishing)), None)
+        if under is not None:
+            standing[under] = joined(standing[under], thing)
+            continue
         opening = on_wall(frame, thing, inside, light)
         if opening is not None:
             walls.append(opening)
-        elif _reaches_floor(thing, inside):
-            standing.append(thing)
     return standing, walls
+
+
+def leans_from(upper: Thing, lower: Thing, vanishing: tuple[float, float]) -> bool:
+    """True when `upper` can be the top of the tall thing whose front is `lower`: right behind it, and as wide."""
+    point = np.array(vanishing)
+    ray = np.array(lower.box.centre) - point
+    axis = 0 if abs(ray[0]) > abs(ray[1]) else 1
+    sign = float(np.sign(ray[axis])) or 1.0
+    behind = float((upper.hull[:, axis] * sign).min() - (lower.hull[:, axis] * sign).max())
+    reach = float(np.ptp(lower.hull[:, axis]))
+    a, b = upper.hull[:, 1 - axis], lower.hull[:, 1 - axis]
+    shared = float(min(a.max(), b.max()) - max(a.min(), b.min()))
+    return -0.3 * reach - 2 < behind < 4 and shared > 0.75 * max(float(np.ptp(a)), float(np.ptp(b)))
 
 
 def _reaches_floor(thing: Thing, inside: Bools) -> bool:
@@ -71,18 +89,28 @@ def _reaches_floor(thing: Thing, inside: Bools) -> bool:
     return bool(inside[rows, columns].mean() > 0.1)
 
 
-def _plausible(things: list[Thing], frame: Frame, openings: list[Opening]) -> list[Thing]:
-    """Leave out what is too small, too thin or too ragged to be a thing, and leaves of doors."""
+def _plausible(things: list[Thing], frame: Frame, floor_colour: Floats) -> list[Thing]:
+    """Leave out what is too small, too thin or too ragged to be a thing, and odd floor planks."""
     kept = []
     for thing in things:
         foot = frame.footprint(thing.box, 0.3)
         long, short = max(foot.length, foot.breadth), min(foot.length, foot.breadth)
         if short < 0.1 or long * short < 0.02 or long * short > 0.7 * frame.size[0] * frame.size[1]:
             continue
+        if long * short < 0.35 and min(long, short) < 0.35 and _is_plank(thing, floor_colour):
+            continue
         if thing.fill < 0.3 and long * short < 1.5 or short < 0.16 and long / short > 3.5:
             continue
         kept.append(thing)
     return kept
+
+
+def _is_plank(thing: Thing, floor: Floats) -> bool:
+    """The floor's hue, a little lighter or darker."""
+    if abs(float(thing.colour[0] - floor[0])) > 16:
+        return False
+    tint = thing.colour[1:] * (max(float(floor[0]), 1.0) / max(float(thing.colour[0]), 1.0)) - floor[1:]
+    return float(np.linalg.norm(tint)) < 5
 
 
 def see(picture: WorkPicture, known_width: float | None = None,
@@ -107,7 +135,7 @@ def see(picture: WorkPicture, known_width: float | None = None,
     inside = polygon_mask(shape, frame.floor)
     areas: Sorted
     if drawing:
-        areas = sort_plan(lab, outline)
+        areas = sort_plan(lab, picture.ink, outline)
     else:
         areas = sort_areas(picture.rgb, lab, outline.inner, frame.floor, view == "perspective")
     things = group_things(areas.labels, areas.foreground, lab, float(max(inside.sum(), 1)))
@@ -118,7 +146,7 @@ def see(picture: WorkPicture, known_width: float | None = None,
         things, openings = _split_walls(things, frame, inside, light)
     elif outline.found:
         openings = ring_gaps(lab, outline, frame)
-    things = _plausible(things, frame, openings)
+    things = _plausible(things, frame, areas.floor_colour)
     nest(things, frame)
     doors = [o.along[1] - o.along[0] for o in openings if o.kind == "door"]
     if known_width is not None and known_width > 0:
@@ -128,7 +156,7 @@ def see(picture: WorkPicture, known_width: float | None = None,
     notes.append(said)
     frame = frame.rescaled(factor)
     openings = [_rescaled(o, factor) for o in openings]
-    things = _plausible(things, frame, openings)
+    things = _plausible(things, frame, areas.floor_colour)
     nest(things, frame)
     return Analysis(view, outline, frame, furnish(things, frame), openings, notes)
 

@@ -70,6 +70,7 @@ class Looks:
     Attributes:
         colour: mean Lab; roundness: hull over rectangle; wall_gap: metres to the nearest wall.
         near_bed: metres to the nearest bed's side, or None; near_table: to a desk or table.
+        loaded: something lies on it; seat: a chair stands at it; backed: only a long side is at a wall.
     """
 
     colour: Floats
@@ -77,6 +78,9 @@ class Looks:
     wall_gap: float
     near_bed: float | None = None
     near_table: float | None = None
+    loaded: bool = False
+    seat: bool = False
+    backed: bool = False
 
 
 def is_green(colour: Floats) -> bool:
@@ -101,6 +105,12 @@ def _score(kind: Kind, foot: Footprint, looks: Looks) -> float:
         value += 2.5 if looks.near_bed is not None and looks.near_bed < 0.35 else -1.0
     if kind.category in ("chair", "stool"):
         value += 1.2 if looks.near_table is not None and looks.near_table < 0.45 else -0.6
+    if kind.height > 1.2 and looks.loaded:
+        value -= 1.5
+    if kind.category in ("desk", "dining_table", "table") and looks.seat:
+        value += 1.6
+    if kind.category.endswith("bed") and looks.backed:
+        value -= 1.2
     if kind.category == "bench" and looks.near_bed is not None and looks.near_bed < 0.3:
         value += 2.0
     return float(value)

@@ -25,11 +25,13 @@ class WorkPicture:
     Attributes:
         rgb: (h, w, 3) float32, sRGB 0..255, lightly denoised.
         lab: (h, w, 3) float32, CIE L*a*b* (D65).
+        ink: (h, w) lightness L* of the darkest spot under each pixel, so that thin lines survive.
         size: (width, height) of the original in pixels.
     """
 
     rgb: Floats
     lab: Floats
+    ink: Floats
     size: tuple[int, int]
 
 
@@ -42,7 +44,8 @@ def rgb_to_lab(rgb: Floats) -> Floats:
     xyz = linear @ to_xyz.T / np.array([0.95047, 1.0, 1.08883])
     f = np.where(xyz > 216 / 24389, np.cbrt(xyz), (24389 / 27 * xyz + 16) / 116)
     lab = np.stack([116 * f[..., 1] - 16, 500 * (f[..., 0] - f[..., 1]), 200 * (f[..., 1] - f[..., 2])], axis=-1)
-    return lab.astype(np.float32)
+    result: Floats = lab.astype(np.float32)
+    return result
 
 
 def _flatten(image: Image.Image) -> Image.Image:
@@ -79,10 +82,14 @@ def decode(data: bytes, long_side: int = LONG_SIDE) -> WorkPicture:
             "The picture cannot be read.", "Save it as PNG or JPEG and load it again."
         ) from error
     scale = long_side / max(flat.size)
+    dark = flat
     if scale < 1:
         small = (max(1, round(flat.width * scale)), max(1, round(flat.height * scale)))
         flat = flat.resize(small, Image.Resampling.BOX if scale < 0.5 else Image.Resampling.LANCZOS)
+        block = min(2 * round(0.5 / scale) + 1, 9)
+        dark = dark.filter(ImageFilter.MinFilter(block)).resize(small, Image.Resampling.NEAREST)
     if min(flat.size) >= 5:
         flat = flat.filter(ImageFilter.MedianFilter(3))
     rgb = np.asarray(flat, dtype=np.float32)
-    return WorkPicture(rgb, rgb_to_lab(rgb), size)
+    ink = rgb_to_lab(np.asarray(dark, dtype=np.float32))[..., 0]
+    return WorkPicture(rgb, rgb_to_lab(rgb), ink, size)

@@ -147,7 +147,8 @@ def radial_share(lab: Floats, top: Polygon, fit: FloorFit) -> float:
 
     In a perspective view these are the room's corners and the upright edges of furniture, doors and windows; seen
     orthographically nothing runs there but chance (about 0.08). Only places are used where that direction is
-    clearly oblique, so edges along the walls say nothing.
+    clearly oblique, so edges along the walls say nothing. Mean of the three weakest quarters around the point, since
+    one turned chair may point anywhere.
     """
     smooth = box_mean(lab, 1)
     dy, dx = np.zeros(lab.shape, np.float32), np.zeros(lab.shape, np.float32)
@@ -165,6 +166,10 @@ def radial_share(lab: Floats, top: Polygon, fit: FloorFit) -> float:
     edge = zone & (size > 0.6)
     across = np.abs(gx * rx + gy * ry) / np.maximum(size * np.hypot(rx, ry), 1e-6)
     weight = np.minimum(size, 4.0)
-    total = float(weight[edge & oblique].sum())
-    radial = float(weight[edge & oblique & (across < 0.12)].sum())
-    return radial / total if total > 1 else 0.0
+    shares = []
+    for right in (False, True):
+        for below in (False, True):
+            part = edge & oblique & ((rx > 0) == right) & ((ry > 0) == below)
+            total = float(weight[part].sum())
+            shares.append(float(weight[part & (across < 0.12)].sum()) / total if total > 8 else 0.0)
+    return float(np.mean(sorted(shares)[:3]))

@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from .boxes import OrientedBox, convex_hull
 from .categories import FALLBACK, RUG, Kind, Looks, guess, heights, is_green, small_category
 from .grouping import Thing
-from .place import Footprint, Frame, contacts
+from .place import Footprint, Frame, WallContact, contacts
 
+PATTERN = -2
 SEATS = ("chair", "armchair", "stool")
 TABLES = ("desk", "dining_table", "round_table", "coffee_table", "table")
 BEDS = ("double_bed", "single_bed")
@@ -49,16 +50,40 @@ def _share_inside(inner: OrientedBox, outer: OrientedBox) -> float:
     return float(outer.contains(grid).mean())
 
 
-def nest(things: list[Thing], frame: Frame) -> None:
-    """Set `flat` and `inside`: rugs are found, and everything on something else gets to know it. Largest first."""
-    square = frame.scale**2
+def _shares(things: list[Thing]) -> NDArray[np.float64]:
+    """[i, j]: share of thing i that lies in thing j's box."""
     shares: NDArray[np.float64] = np.zeros((len(things), len(things)))
     for i, inner in enumerate(things):
         for j, outer in enumerate(things):
             if i != j:
                 shares[i, j] = _share_inside(inner.box, outer.box)
+    return shares
+
+
+def _is_pattern(inner: Thing, rug: Thing) -> bool:
+    """A field or border of the rug itself: of its colour, or a ragged piece around its centre."""
+    alike = float(np.linalg.norm((inner.colour - rug.colour) / (1.6, 1.0, 1.0)))
+    apart = float(np.linalg.norm(np.array(inner.box.centre) - np.array(rug.box.centre)))
+    return alike < 7 or inner.fill < 0.45 or (
+        inner.box.area > 0.35 * rug.box.area and apart < 0.1 * min(rug.box.length, rug.box.breadth) and alike < 25)
+
+
+def nest(things: list[Thing], frame: Frame) -> None:
+    """Set `flat` and `inside`: rugs are found, and everything on something else gets to know it.
+
+    Takes what is only a rug's pattern out of the list. The list is ordered by size, the largest first.
+    """
+    square = frame.scale**2
+    shares = _shares(things)
     for j, outer in enumerate(things):
         outer.flat = _is_rug(j, things, shares, frame, square)
+    for j in [j for j, outer in enumerate(things) if outer.flat]:
+        for i, inner in enumerate(things):
+            if i != j and shares[i, j] > 0.8 and _is_pattern(inner, things[j]):
+                inner.flat, inner.inside = False, PATTERN
+                things[j].size += inner.size
+    things[:] = [thing for thing in things if thing.inside != PATTERN]
+    shares = _shares(things)
     for i, inner in enumerate(things):
         holders = [j for j, outer in enumerate(things)
                    if j != i and not inner.flat and shares[i, j] > 0.8 and outer.box.area > 1.4 * inner.box.area]
@@ -112,7 +137,8 @@ def furnish(things: list[Thing], frame: Frame) -> list[Item]:
     for _ in range(2):  # the second time neighbours are known
         known = [item for item in items if item is not None and item.parent < 0]
         for i in standing:
-            items[i] = _standing(things[i], frame, [k for k in known if k.thing is not things[i]])
+            loaded = any(t.inside == i for t in things)
+            items[i] = _standing(things[i], frame, [k for k in known if k.thing is not things[i]], loaded)
     for i in sorted((i for i in range(len(things)) if i not in standing), key=lambda i: -things[i].box.area):
         items[i] = _resting(things, i, items, frame)
     result = [item for item in items if item is not None]
@@ -121,7 +147,7 @@ def furnish(things: list[Thing], frame: Frame) -> list[Item]:
     return result
 
 
-def _standing(thing: Thing, frame: Frame, known: list[Item]) -> Item:
+def _standing(thing: Thing, frame: Frame, known: list[Item], loaded: bool) -> Item:
     if thing.flat:
         return Item(thing, RUG.category, frame.footprint(thing.box, RUG.height), RUG.height, 0.6)
     feet = {height: frame.footprint(thing.box, height) for height in heights()}
@@ -131,10 +157,20 @@ def _standing(thing: Thing, frame: Frame, known: list[Item]) -> Item:
         thing.colour, thing.roundness, near[0].gap if near else 9.0,
         min((_gap(flat, k.foot) for k in known if k.category in BEDS), default=None),
         min((_gap(flat, k.foot) for k in known if k.category in TABLES), default=None),
+        loaded,
+        any(k.category in SEATS and _gap(flat, k.foot) < 0.35 for k in known),
+        _backed(flat, near),
     )
     kind, confidence = guess(feet, looks)
     foot = feet.get(kind.height, frame.footprint(thing.box, kind.height))
     return Item(thing, kind.category, foot, kind.height, round(confidence * min(1.0, thing.fill + 0.2), 2))
+
+
+def _backed(foot: Footprint, near: list[WallContact]) -> bool:
+    """True when only a long side is at a wall, as a sofa stands and a bed does not."""
+    along = foot.angle if foot.length >= foot.breadth else foot.angle + 90
+    close = [c for c in near if c.gap < 0.25]
+    return bool(close) and all(abs((c.yaw - along + 90) % 180 - 90) < 45 for c in close)
 
 
 def _resting(things: list[Thing], i: int, items: list[Item | None], frame: Frame) -> Item:

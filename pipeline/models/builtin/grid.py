@@ -25,7 +25,8 @@ def union(count: int, first: Ints, second: Ints) -> Ints:
             if np.array_equal(jumped, parent):
                 break
             parent = jumped
-    return np.unique(parent, return_inverse=True)[1].astype(np.int64).reshape(-1)
+    result: Ints = np.unique(parent, return_inverse=True)[1].astype(np.int64).reshape(-1)
+    return result
 
 
 def components(values: NDArray[np.generic]) -> Ints:
@@ -51,7 +52,8 @@ def box_sum(values: Floats, radius: int) -> Floats:
         high = np.minimum(index + radius + 1, length)
         low = np.maximum(index - radius, 0)
         result = padded.take(high, axis) - padded.take(low, axis)
-    return result.astype(np.float32)
+    total: Floats = result.astype(np.float32)
+    return total
 
 
 def box_mean(values: Floats, radius: int, mask: Bools | None = None) -> Floats:

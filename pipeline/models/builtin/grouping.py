@@ -44,7 +44,8 @@ class Thing:
         return polygon_area(self.hull) / max(self.box.area, 1.0)
 
 
-def _joined(a: Thing, b: Thing) -> Thing:
+def joined(a: Thing, b: Thing) -> Thing:
+    """The two as one thing."""
     hull = convex_hull(np.concatenate([a.hull, b.hull]))
     size = a.size + b.size
     colour = ((a.colour * a.size + b.colour * b.size) / size).astype(np.float32)
@@ -68,7 +69,7 @@ class _Board:
 
     def join(self, a: int, b: int) -> None:
         """Join b into a."""
-        self.things[a] = _joined(self.things[a], self.things[b])
+        self.things[a] = joined(self.things[a], self.things[b])
         for other, length in self.touch.pop(b).items():
             del self.touch[other][b]
             if other != a:
@@ -93,11 +94,13 @@ def _gain(a: Thing, b: Thing, border: int) -> float:
     small, large = (a, b) if a.size <= b.size else (b, a)
     if border < 0.6 * min(small.box.length, small.box.breadth):
         return 0.0
-    union = _joined(a, b)
+    union = joined(a, b)
     if union.fill < 0.8:
         return 0.0
+    if min(a.fill, b.fill) < 0.7 and small.size > 0.25 * large.size:
+        return 0.0  # something with a bite out of it lies under something else, as a rug under a bed
     better = union.fill - max(large.fill, 0.5 * (a.fill + b.fill))
-    return union.fill + 0.5 * better if better > -0.06 else 0.0
+    return union.fill + 0.2 * better if better > -0.06 else 0.0
 
 
 def _merge_rectangles(board: _Board) -> None:
@@ -129,15 +132,19 @@ def _merge_contained(board: _Board, room: float) -> None:
         changed = False
         for key in sorted(board.things, key=lambda k: board.things[k].size):
             inner = board.things[key]
-            for other, border in board.touch[key].items():
+            for other in board.touch[key]:
                 outer = board.things[other]
                 if outer.box.area <= inner.box.area or _within(inner, outer) < 0.95:
                     continue
                 apart = float(np.linalg.norm(np.array(inner.box.centre) - np.array(outer.box.centre)))
                 share = inner.box.area / outer.box.area
+                apart_colour = float(np.linalg.norm(inner.colour - outer.colour))
                 pattern = share > 0.3 and apart < 0.12 * min(outer.box.length, outer.box.breadth) and outer.fill < 0.8
                 speck = inner.size < 0.0015 * room or inner.fill < 0.55
-                if pattern or speck or share > 0.72:
+                hole = outer.box.area < 0.12 * room and outer.fill < 0.75 and joined(inner, outer).fill > 0.85
+                small = inner.size < 0.0006 * room
+                close = outer.box.area < 12 * inner.box.area or apart_colour < 12 or small
+                if pattern or (speck and close) or share > 0.72 or hole:
                     board.join(other, key)
                     changed = True
                     break
@@ -152,10 +159,11 @@ def _likeness(thing: Thing, mate: Thing, border: int, room: float) -> float:
     if mate.size > 0.02 * room and thing.fill > 0.6 and thing.size > 0.0015 * room:
         return 0.0
     around = 2 * (thing.box.length + thing.box.breadth)
-    likeness = border / max(around, 1.0) - 0.004 * float(np.linalg.norm(thing.colour - mate.colour))
+    likeness = border / max(around, 1.0) - (
+        0.004 if mate.box.area < 6 * thing.box.area else 0.012) * float(np.linalg.norm(thing.colour - mate.colour))
     if likeness < 0.12:
         return 0.0
-    union = _joined(thing, mate)
+    union = joined(thing, mate)
     return 0.0 if union.fill < 0.5 and union.fill < mate.fill - 0.02 else likeness
 
 

@@ -62,6 +62,8 @@ def ring_gaps(lab: Floats, outline: Outline, frame: Frame) -> list[Opening]:
     usual = [t for t in outline.wall if t >= 2]
     if not usual:
         return []
+    ring = [inward(lab, outline.outer, e, int(round(outline.wall[e]))) for e in range(count) if outline.wall[e] >= 2]
+    colour = np.median(np.concatenate([strip.reshape(-1, 3) for strip in ring]), axis=0)
     for edge in range(count):
         thickness = int(round(outline.wall[edge]))
         if thickness < 2:
@@ -69,7 +71,6 @@ def ring_gaps(lab: Floats, outline: Outline, frame: Frame) -> list[Opening]:
         strip = inward(lab, outline.outer, edge, thickness)
         if min(strip.shape[:2]) < 2:
             continue
-        colour = np.median(strip.reshape(-1, 3), axis=0)
         other = np.linalg.norm(strip - colour, axis=2) > 12
         flags = other.mean(0) > 0.55
         corner = int(round(1.5 * max(usual)))

@@ -35,7 +35,7 @@ def _without_lines(labels: Ints, line: Bools) -> Ints:
     return np.maximum(result, 0)
 
 
-def sort_plan(lab: Floats, outline: Outline) -> Sorted:
+def sort_plan(lab: Floats, ink: Floats, outline: Outline) -> Sorted:
     """Find bare floor and drawn things: what lines enclose inside the walls.
 
     The floor is the largest area between the lines; areas that are joined with the outside, such as the quarter
@@ -43,7 +43,7 @@ def sort_plan(lab: Floats, outline: Outline) -> Sorted:
     """
     shape = (lab.shape[0], lab.shape[1])
     room = polygon_mask(shape, inset(outline.inner, np.full(len(outline.inner), 1.0)))
-    line = lab[..., 0] < 80
+    line = ink < 65
     areas = components(line)
     size = np.bincount(areas[room], minlength=int(areas.max()) + 1)
     _, mean = area_means(areas, lab)

@@ -151,24 +151,34 @@ def floor_areas(labels: Ints, lab: Floats, inside: Bools, rim: Bools) -> Ints:
     return np.flatnonzero(chosen)
 
 
-def _shadows(labels: Ints, rgb: Floats, lab: Floats, floor: Ints) -> Ints:
-    """Areas that are the floor's colour in less light: darker by one factor in all channels, with a mostly soft edge."""
+def _shadows(labels: Ints, rgb: Floats, lab: Floats, lit: Ints, zone: Bools) -> Ints:
+    """Areas that are the surface's colour in less light: darker by one factor in all channels, with a soft edge.
+
+    On a surface with a hue of its own the hue tells, and the edge may be harder.
+
+    Args:
+        lit: areas of the surface; zone: mask of where it may be.
+    """
     size, mean = area_means(labels, rgb)
     count = len(size)
-    is_floor = np.zeros(count, dtype=bool)
-    is_floor[floor] = True
-    base = (mean[is_floor] * size[is_floor, None]).sum(0) / size[is_floor].sum()
+    surface = np.zeros(count, dtype=bool)
+    surface[lit] = True
+    weight = np.bincount(labels[zone], minlength=count) * surface
+    if not weight.any():
+        return np.zeros(0, dtype=np.int64)
+    base = (mean * weight[:, None]).sum(0) / weight.sum()
     light = np.maximum(mean, 1.0) ** 2.2 / np.maximum(base, 1.0) ** 2.2
     factor = light.mean(1)
-    even = light.std(1) < 0.12 * factor + 0.02
+    hued = float(np.ptp(base)) > 30
+    even = light.std(1) < (0.22 if hued else 0.1) * factor + 0.02
     a, b, length, contrast = border_contrast(labels, lab)
-    touching = np.zeros(count)
-    soft = np.zeros(count)
+    touching, soft = np.zeros(count), np.zeros(count)
     for x, y in ((a, b), (b, a)):
-        np.add.at(touching, x, length * is_floor[y])
-        np.add.at(soft, x, length * is_floor[y] * (contrast < 5.0))
+        np.add.at(touching, x, length * surface[y])
+        np.add.at(soft, x, length * surface[y] * (contrast < (16.0 if hued else 6.0)))
     gentle = soft > 0.6 * np.maximum(touching, 1)
-    result: Ints = np.flatnonzero(even & gentle & (factor > 0.25) & (factor < 1.05) & (touching > 0) & ~is_floor)
+    within = np.bincount(labels[zone], minlength=count) > 0.5 * size
+    result: Ints = np.flatnonzero(even & gentle & (factor > 0.12) & (factor < 1.06) & (touching > 0) & ~surface & within)
     return result
 
 
@@ -187,13 +197,16 @@ def sort_areas(rgb: Floats, lab: Floats, top: Polygon, floor: Polygon, perspecti
     side = float(np.sqrt(max(area_floor, 1)))
     rim = inside & ~polygon_mask(shape, inset(floor, np.full(len(floor), max(2.0, 0.07 * side))))
     chosen = floor_areas(labels, lab, inside, rim)
-    chosen = np.union1d(chosen, _shadows(labels, rgb, lab, chosen))
+    for _ in range(2):
+        chosen = np.union1d(chosen, _shadows(labels, rgb, lab, chosen, inside))
     bare = _kept(labels, lab, chosen, inside, area_floor) & (inside if perspective else room)
     faces = np.zeros(shape, dtype=bool)
     for zone in zones:
         vote = np.bincount(labels[zone], minlength=len(size))
         alike = np.linalg.norm((mean - mean[int(np.argmax(vote))]) / (7.0, 4.0, 4.0), axis=1) < 2.0
-        faces |= _kept(labels, lab, np.flatnonzero(alike), zone, area_floor) & zone
+        lit = np.flatnonzero(alike)
+        lit = np.union1d(lit, _shadows(labels, rgb, lab, lit, zone))
+        faces |= _kept(labels, lab, lit, zone, area_floor) & zone
     foreground = opened(room & ~bare & ~faces, 1)
     colour = lab[bare].mean(0) if bare.any() else lab[inside].mean(0) if inside.any() else lab.reshape(-1, 3).mean(0)
     return Sorted(labels, bare, foreground, colour.astype(np.float32))

@@ -1,0 +1,220 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Runs a job in the window from an application timer, or blocking where there is no window.
+
+Not a modal operator: Blender suspends auto-save while one runs, and models take minutes. The timer is not persistent,
+so Blender itself ends it when another file is loaded; `cancel_for_load` drops the job before that.
+"""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import bpy
+
+from ..pipeline.errors import Cancelled, RoomError
+from ..pipeline.memory import load_memory
+from ..pipeline.run import Run, StageReport
+from ..pipeline.stages.base import Stage
+from . import clients, properties, reference, view_state
+from .job import Job, Progress
+from .scene_backend import ResolvedScene
+
+log = logging.getLogger(__name__)
+BUDGET = 0.03
+"""Seconds of a tick that are spent on the job."""
+INTERVAL = 0.03
+_PATIENCE = 0.2
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How the last job of a scene ended: a sentence, and what went wrong."""
+
+    text: str
+    problem: view_state.Problem | None = None
+
+
+_job: Job | None = None
+_outcomes: dict[int, Outcome] = {}
+_reports: dict[int, list[StageReport]] = {}
+_shown: tuple[Any, ...] = ()
+
+
+def is_running() -> bool:
+    """Whether a job is on its way, in whatever scene."""
+    return _job is not None
+
+
+def progress_of(scene: Any) -> Progress | None:
+    """What the job of this scene is doing, None when it has none."""
+    return _job.progress if _job is not None and _job.scene_uid == scene.session_uid else None
+
+
+def outcome_of(scene: Any) -> Outcome | None:
+    """How the last job of this scene ended."""
+    return _outcomes.get(scene.session_uid)
+
+
+def note_outcome(scene: Any, text: str, problem: view_state.Problem | None = None) -> None:
+    """Show a sentence where the result of a job is shown."""
+    _outcomes[scene.session_uid] = Outcome(text, problem)
+    redraw()
+
+
+def reports_of(scene: Any) -> list[StageReport]:
+    """What the stages took that ran in this session."""
+    return list(_reports.get(scene.session_uid, []))
+
+
+def make_run(scene: Any) -> tuple[Run, ResolvedScene]:
+    """A run for the scene's picture, memory and settings.
+
+    Raises:
+        RoomError: there is no picture, memory cannot be read, or the model's settings are not complete.
+    """
+    picture = reference.kept_picture(scene)
+    if picture is None:
+        raise RoomError("There is no picture yet.", "Load a picture of a room first.")
+    backend = ResolvedScene(scene)
+    memory = load_memory(backend.load_memory())
+    memory.settings = properties.memory_settings(scene.code_as_room, memory.settings)
+    return Run(picture, memory, clients.current_client(), backend), backend
+
+
+def start(scene: Any, stages: Sequence[Stage], again: bool = False, fresh: bool = False) -> Job:
+    """Begin a job; `run_blocking` or the window's timer takes it to its end.
+
+    Raises:
+        RoomError: another job is on its way, or as `make_run`.
+    """
+    global _job
+    if _job is not None:
+        raise RoomError("Another run is going on.", "Wait for it, or stop it.")
+    run, backend = make_run(scene)
+    uid = scene.session_uid
+
+    def stage_done(title: str) -> None:
+        view_state.forget_failure(uid, job.progress.stage)
+        _push_undo(f"Room: {title}")
+        _refresh(uid)
+
+    for stage in stages:
+        view_state.forget_failure(uid, stage.id)
+    job = _job = Job(run, backend, stages, again, fresh, stage_done)
+    _outcomes.pop(uid, None)
+    return job
+
+
+def run_in_window() -> None:
+    """Let Blender's timer take the job to its end."""
+    if not bpy.app.timers.is_registered(_tick):
+        bpy.app.timers.register(_tick, first_interval=0.0)
+    redraw()
+
+
+def run_blocking() -> Outcome:
+    """Take the job to its end here and now."""
+    job = _job
+    if job is None:
+        return Outcome("Nothing to run")
+    try:
+        while job.tick(BUDGET):
+            job.wait(_PATIENCE)
+    except BaseException:  # a keyboard interrupt in background mode
+        job.stop()
+        _finish(job)
+        raise
+    return _finish(job)
+
+
+def stop() -> None:
+    """Stop the job that is on its way."""
+    if _job is not None:
+        _job.stop()
+        redraw()
+
+
+def cancel_for_load() -> None:
+    """Drop the job and all that belongs to the present file, before Blender loads another."""
+    global _job
+    if _job is not None:
+        _job.drop()
+    _job = None
+    _outcomes.clear()
+    _reports.clear()
+    if bpy.app.timers.is_registered(_tick):
+        bpy.app.timers.unregister(_tick)
+
+
+def _tick() -> float | None:
+    """The timer. Nothing may be raised here: Blender would end the timer and the job would hang."""
+    job = _job
+    if job is None:
+        return None
+    try:
+        if job.tick(BUDGET):
+            _redraw_on_change(job.progress)
+            return INTERVAL
+        _finish(job)
+    except Exception:
+        log.exception("The run ended unexpectedly")
+        cancel_for_load()
+    redraw()
+    return None
+
+
+def _finish(job: Job) -> Outcome:
+    """Take the job's result over into what the panel shows."""
+    global _job
+    if _job is job:
+        _job = None
+    uid, progress = job.scene_uid, job.progress
+    seconds = time.monotonic() - progress.began
+    done = f"{job.stages_done} stage{'' if job.stages_done == 1 else 's'} in {seconds:.1f} s"
+    if job.error is None:
+        outcome = Outcome(f"Done: {done}" if job.stages_done else "Nothing to do: every stage is done")
+    elif isinstance(job.error, Cancelled):
+        outcome = Outcome("Stopped. What was answered is kept")
+    else:
+        view_state.note_failure(uid, progress.stage, job.error)
+        outcome = Outcome(f"{progress.title or 'The run'} failed", view_state.Problem.of(job.error))
+    _outcomes[uid] = outcome
+    _reports.setdefault(uid, []).extend(job.run.reports)
+    _refresh(uid)
+    return outcome
+
+
+def _refresh(uid: int) -> None:
+    scene = next((s for s in bpy.data.scenes if s.session_uid == uid), None)
+    if scene is not None:
+        view_state.refresh(scene)
+
+
+def _push_undo(message: str) -> None:
+    """One undo step a stage: the scene's objects and the memory text together."""
+    if not bpy.app.background:
+        bpy.ops.ed.undo_push(message=message)
+
+
+def _redraw_on_change(progress: Progress) -> None:
+    """Redraw only when the panel would look different: once a second for the clock, else on news."""
+    global _shown
+    seconds = int(time.monotonic() - progress.began)
+    shown = (progress.stage, progress.what, progress.step, progress.note, progress.stopping, seconds)
+    if shown != _shown:
+        _shown = shown
+        redraw()
+
+
+def redraw() -> None:
+    """Redraw the sidebars of all 3D views in all windows."""
+    for window in bpy.context.window_manager.windows if bpy.context.window_manager else ():
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D":
+                for region in area.regions:
+                    if region.type == "UI":
+                        region.tag_redraw()

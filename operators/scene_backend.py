@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Scenes as the driver needs them: found again on every call, and with memory that worker threads may write to.
+
+No reference to Blender data outlives a call (undo and load make them invalid). `ResolvedScene` looks its scene up by
+`session_uid`, which survives undo. `save_memory` is the one method that a stage's end calls wherever the stage was
+running, so it only keeps the text; `flush` writes it on the main thread.
+"""
+
+from __future__ import annotations
+
+import threading
+from typing import Any
+
+import bpy
+
+from ..pipeline.artifacts.camera import CameraModel
+from ..pipeline.artifacts.layout import LayoutEdit
+from ..pipeline.errors import SceneError
+from ..pipeline.scene.backend import BlenderScene
+
+
+def scene_by_uid(uid: int) -> Any | None:
+    """The scene with this `session_uid`, None when it is gone."""
+    return next((scene for scene in bpy.data.scenes if scene.session_uid == uid), None)
+
+
+class ResolvedScene:
+    """A `SceneBackend` that outlives undo. Everything but `save_memory` on the main thread only."""
+
+    def __init__(self, scene: Any) -> None:
+        self.uid: int = scene.session_uid
+        self._lock = threading.Lock()
+        self._unsaved: str | None = None
+
+    def _scene(self) -> BlenderScene:
+        scene = scene_by_uid(self.uid)
+        if scene is None:
+            raise SceneError("The scene of this room was deleted.", "Undo that, or load the picture in another scene.")
+        return BlenderScene(scene)
+
+    def build(self, text: str) -> None:
+        """As `SceneBackend.build`."""
+        self._scene().build(text)
+
+    def render(self, camera: CameraModel, long_side: int, labels: bool) -> bytes:
+        """As `SceneBackend.render`."""
+        return self._scene().render(camera, long_side, labels)
+
+    def read_back(self) -> list[LayoutEdit]:
+        """As `SceneBackend.read_back`."""
+        return self._scene().read_back()
+
+    def load_memory(self) -> str:
+        """As `SceneBackend.load_memory`; what was saved last, even before it was flushed."""
+        with self._lock:
+            if self._unsaved is not None:
+                return self._unsaved
+        return self._scene().load_memory()
+
+    def save_memory(self, text: str) -> None:
+        """Keep the memory's text until `flush`; any thread."""
+        with self._lock:
+            self._unsaved = text
+
+    def flush(self) -> None:
+        """Write the text that `save_memory` kept."""
+        with self._lock:
+            text, self._unsaved = self._unsaved, None
+        if text is not None:
+            self._scene().save_memory(text)
+
+    def program_text(self) -> str:
+        """As `SceneBackend.program_text`."""
+        return self._scene().program_text()

@@ -1,0 +1,59 @@
+"""A small room seen from above by a known camera."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from code_as_room.pipeline.artifacts.analysis import Calibration, DetectedObject, SceneAnalysis
+from code_as_room.pipeline.artifacts.camera import CameraModel
+from code_as_room.pipeline.artifacts.common import ImagePoint
+from code_as_room.pipeline.geometry.camera import camera_from, project, tilt_rotation
+from code_as_room.pipeline.geometry.footprint import image_box_of
+
+FLOOR = [(-2.3, -1.95), (2.3, -1.95), (2.3, 1.95), (-2.3, 1.95)]
+TRUE_OBJECTS = [
+    ("bed", "double bed", (0.2, 0.9, 0.45), (1.7, 2.1, 0.9), 0.0, "floor", None),
+    ("stand", "nightstand", (-1.0, 1.7, 0.25), (0.45, 0.45, 0.5), 0.0, "floor", None),
+    ("chair", "armchair", (-1.6, -1.2, 0.4), (0.8, 0.8, 0.8), 40.0, "floor", None),
+    ("closet", "wardrobe", (2.0, -0.6, 1.0), (1.4, 0.6, 2.0), 270.0, "floor", None),
+    ("lamp", "table lamp", (-1.0, 1.7, 0.7), (0.25, 0.25, 0.4), 0.0, "surface", "stand"),
+    ("rug", "rug", (0.2, 0.2, 0.005), (2.4, 1.8, 0.01), 0.0, "floor", None),
+    ("art", "painting", (0.2, 1.93, 1.6), (0.9, 0.03, 0.6), 0.0, "wall", "top"),
+]
+
+
+@pytest.fixture
+def camera() -> CameraModel:
+    height, size = 6.5, (1200, 1020)
+    focal = size[1] / 2 / math.tan(math.atan(3.9 * 0.8 / height))
+    return camera_from("perspective", (0, 0, height), tilt_rotation(0, 0), focal, size)
+
+
+@pytest.fixture
+def calibration(camera: CameraModel) -> Calibration:
+    return Calibration(camera=camera, floor=FLOOR, height=2.6, error_px=0.1, scale_source="model")
+
+
+@pytest.fixture
+def analysis(camera: CameraModel) -> SceneAnalysis:
+    """The true room, as an analysis without errors."""
+    objects = [
+        DetectedObject(
+            id=i, category=c, centre=at, size=size, yaw=yaw, placement=placement, parent=parent,
+            salience="major" if placement == "floor" and size[2] > 0.1 else "minor",
+            box=image_box_of(camera, at, size, yaw),
+        )
+        for i, c, at, size, yaw, placement, parent in TRUE_OBJECTS
+    ]  # fmt: skip
+    corners = project(camera, [(x, y, 0.0) for x, y in FLOOR])
+    tops = project(camera, [(x, y, 2.6) for x, y in FLOOR])
+    return SceneAnalysis(
+        image_size=camera.image_size,
+        view="perspective",
+        room_size=(4.6, 3.9, 2.6),
+        floor=FLOOR,
+        floor_polygon=[ImagePoint(x=float(x), y=float(y)) for x, y in corners],
+        wall_top_polygon=[ImagePoint(x=float(x), y=float(y)) for x, y in tops],
+        objects=objects,
+    )
