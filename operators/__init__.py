@@ -1,1 +1,55 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+"""What the artist can do: thin verbs over the pipeline, and the two commands.
+
+Nothing is imported here until `register` is called, so that `operators.command` works without Blender's window.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+COMMAND = "code_as_room"
+_command: Any = None
+
+
+def _classes() -> tuple[type, ...]:
+    from . import picture_ops, properties, result_ops, stage_ops
+
+    return (*properties.CLASSES, *picture_ops.CLASSES, *stage_ops.CLASSES, *result_ops.CLASSES)
+
+
+def _run_command(argv: list[str]) -> int:
+    """`blender --command code_as_room PICTURE --out DIR`."""
+    from .command import cli_main
+
+    return cli_main(argv)
+
+
+def register() -> None:
+    """Register classes, the scene's settings, handlers and the command."""
+    global _command
+    import bpy
+
+    from . import handlers, properties
+
+    for cls in _classes():
+        bpy.utils.register_class(cls)
+    bpy.types.Scene.code_as_room = bpy.props.PointerProperty(type=properties.CodeAsRoomSettings, name="Code-as-Room")
+    handlers.register()
+    _command = bpy.utils.register_cli_command(COMMAND, _run_command)
+
+
+def unregister() -> None:
+    """Undo `register`, in the reverse order."""
+    global _command
+    import bpy
+
+    from . import handlers
+
+    if _command is not None:
+        bpy.utils.unregister_cli_command(_command)
+        _command = None
+    handlers.unregister()
+    del bpy.types.Scene.code_as_room
+    for cls in reversed(_classes()):
+        bpy.utils.unregister_class(cls)

@@ -22,13 +22,13 @@ def draw_boxes(image: Image.Image, boxes: Sequence[tuple[str, ImageBox]]) -> Non
         boxes: (label, box) pairs, boxes in 0-1000 of the image's width and height; what lies outside is cut off.
     """
     draw = ImageDraw.Draw(image)
-    size = max(11, round(max(image.size) / 90))
-    line = max(1, round(max(image.size) / 800))
+    size = max(13, round(max(image.size) / 80))
+    line = max(2, round(max(image.size) / 700))
     font = ImageFont.load_default(size)
     rects = [_pixels(box, image.size) for _, box in boxes]
     for index, rect in enumerate(rects):
-        # A dark line under the coloured one keeps it visible on any ground.
-        draw.rectangle(rect, outline=(0, 0, 0), width=line + 2)
+        # Thin dark edges on both sides of the coloured line keep it visible on any ground.
+        draw.rectangle((rect[0] - 1, rect[1] - 1, rect[2] + 1, rect[3] + 1), outline=(0, 0, 0), width=line + 2)
         draw.rectangle(rect, outline=_COLOURS[index % len(_COLOURS)], width=line)
     taken: list[_Rect] = []
     for index, (label, _) in enumerate(boxes):

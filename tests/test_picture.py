@@ -9,7 +9,6 @@ import zlib
 
 import numpy as np
 import pytest
-from code_as_room.pipeline.artifacts.common import ImageBox
 from code_as_room.pipeline.errors import PictureError
 from code_as_room.pipeline.picture import KEEP_LONG_SIDE, load_picture, read_picture
 from hypothesis import given, settings
@@ -195,7 +194,6 @@ def test_a_thirty_megapixel_picture_is_scaled_to_what_is_kept_and_sent():
 def test_nothing_is_ever_enlarged():
     picture = read_picture(encoded(halves(), "PNG"), "x")
     assert opened(picture.for_model()).size == (160, 100)
-    assert opened(picture.crop(ImageBox(x_min=0, y_min=0, x_max=500, y_max=500), margin=0)).size == (80, 50)
 
 
 def test_a_photograph_is_sent_small():
@@ -280,53 +278,3 @@ def test_damaged_files_give_a_picture_or_a_picture_error(kind, data):
     except PictureError:
         return
     assert picture.pixels().shape == (picture.height, picture.width, 3)
-
-
-# Crops and overlays ----------------------------------------------------------------------------------------------
-
-
-def test_a_crop_is_the_part_with_its_margin():
-    picture = read_picture(encoded(halves(400, 200), "PNG"), "x")
-    crop = opened(picture.crop(ImageBox(x_min=500, y_min=500, x_max=750, y_max=1000), margin=0.1))
-    assert crop.size == (120, 110)
-    assert crop.getpixel((2, 50)) == LEFT and crop.getpixel((60, 50)) == RIGHT
-    swapped = picture.crop(ImageBox(x_min=750, y_min=1000, x_max=500, y_max=500), margin=0.1)
-    assert opened(swapped).size == crop.size
-    with pytest.raises(PictureError):
-        picture.crop(ImageBox(x_min=1200, y_min=0, x_max=1300, y_max=100))
-
-
-def test_boxes_are_drawn_thin_at_their_places_with_labels():
-    picture = read_picture(encoded(Image.new("RGB", (800, 600), (128, 128, 128)), "PNG"), "x")
-    box = ImageBox(x_min=250, y_min=250, x_max=750, y_max=750)
-    pixels = np.asarray(opened(picture.with_boxes_drawn([("12", box)]))).astype(int)
-    changed = np.abs(pixels - 128).max(axis=2) > 20
-    ys, xs = np.nonzero(changed)
-    assert abs(xs.min() - 200) <= 3 and abs(xs.max() - 600) <= 3 and abs(ys.min() - 150) <= 3 and abs(ys.max() - 450) <= 3
-    assert not changed[200:400, 300:500].any()
-    assert changed[150:200, 200:260].sum() > 150
-    assert np.array_equal(picture.pixels(), np.full((600, 800, 3), 128))
-
-
-def test_labels_of_boxes_at_the_same_place_do_not_cover_each_other():
-    picture = read_picture(encoded(Image.new("RGB", (800, 600), (128, 128, 128)), "PNG"), "x")
-    box = ImageBox(x_min=400, y_min=400, x_max=600, y_max=600)
-
-    def dark(labels):
-        pixels = np.asarray(opened(picture.with_boxes_drawn([(label, box) for label in labels])))
-        return int((pixels.max(axis=2) < 10).sum())
-
-    assert dark(["1", "2", "3"]) > dark(["1", "2"]) + 60 > dark(["1"]) + 120
-
-
-def test_boxes_outside_inside_out_and_empty_are_survived():
-    picture = read_picture(encoded(halves(), "PNG"), "x")
-    boxes = [
-        ("a", ImageBox(x_min=-500, y_min=-500, x_max=2000, y_max=2000)),
-        ("b", ImageBox(x_min=900, y_min=900, x_max=100, y_max=100)),
-        ("", ImageBox(x_min=1500, y_min=1500, x_max=1600, y_max=1600)),
-        ("a very long label that goes on and on", ImageBox(x_min=500, y_min=500, x_max=500, y_max=500)),
-        ("größe 日", ImageBox(x_min=0, y_min=0, x_max=1, y_max=1)),
-    ]
-    assert opened(picture.with_boxes_drawn(boxes)).size == (160, 100)
-    assert picture.with_boxes_drawn(boxes) == picture.with_boxes_drawn(boxes)

@@ -64,9 +64,8 @@ def _axes(rect: Rect) -> tuple[Point, Point]:
 def support(rect: Rect, direction: Sequence[float]) -> float:
     """How far the rectangle reaches from its centre in a unit direction, metres."""
     along_x, along_y = _axes(rect)
-    return (
-        rect.width / 2 * abs(along_x[0] * direction[0] + along_x[1] * direction[1])
-        + rect.depth / 2 * abs(along_y[0] * direction[0] + along_y[1] * direction[1])
+    return rect.width / 2 * abs(along_x[0] * direction[0] + along_x[1] * direction[1]) + rect.depth / 2 * abs(
+        along_y[0] * direction[0] + along_y[1] * direction[1]
     )
 
 

@@ -304,6 +304,7 @@ def side_distance(corners: PolygonLike, side: int, start: Sequence[float], end: 
 
 def segments_cross(a: Sequence[float], b: Sequence[float], c: Sequence[float], d: Sequence[float]) -> bool:
     """Whether two segments cross at a point inside both (touching at an end does not count)."""
+
     def side(p: Sequence[float], q: Sequence[float], r: Sequence[float]) -> float:
         return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
 

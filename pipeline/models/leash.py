@@ -42,7 +42,7 @@ class Leash:
         with self._lock:
             for held in self._held:
                 with contextlib.suppress(OSError):
-                    pass
+                    held.shutdown(socket.SHUT_RDWR)
 
     def release(self) -> None:
         """Let go of the sockets; they are closed by whoever opened them."""

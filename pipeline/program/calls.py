@@ -11,7 +11,7 @@ from .expressions import Expressions
 from .limits import Meter
 from .refusals import located
 from .scopes import Scope
-from .values import CONTAINERS, Code, Frame, Function, Native, measure, settle
+from .values import LONG, Code, Frame, Function, Native, settle, spend_argument
 
 
 class Calls(Expressions):
@@ -98,11 +98,11 @@ def call_guarded(meter: Meter, native: Native, arguments: Code, keywords: Keywor
         named = {name: value(f) for name, value in keywords}
         try:
             for value in args:
-                if value.__class__ in CONTAINERS:
-                    measure(meter, value)
+                if value.__class__ in LONG:
+                    spend_argument(meter, value)
             for value in named.values():
-                if value.__class__ in CONTAINERS:
-                    measure(meter, value)
+                if value.__class__ in LONG:
+                    spend_argument(meter, value)
             result = call(*args, **named)
             if result.__class__ is float and -1e300 < result < 1e300:
                 return result

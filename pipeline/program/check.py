@@ -42,7 +42,7 @@ class Checker:
 
     def block(self, body: list[ast.stmt], in_def: bool, in_loop: bool, depth: int) -> None:
         """The statements of one block."""
-        if depth > self.limits.blocks:
+        if body and depth > self.limits.blocks:
             self.report(body[0], "blocks are nested too deeply", "Move the inner part into a def.")
             return
         for node in body:

@@ -14,6 +14,8 @@ from .refusals import located
 from .scopes import Comprehension, Scope
 from .values import UNSET, Code, Frame, Function, check_key, too_many
 
+STEPS_OF_DEFINITION = 16
+"""A function object takes about as much time and memory as this many steps."""
 Loop = Callable[[Frame, Iterator[Any]], Iterator[None]]
 """Runs the for parts of a comprehension; stops once for every element that is to be made."""
 
@@ -125,7 +127,7 @@ class Comprehensions(Calls):
         outside, self.cost = self.cost, 0
         body = self.compile(node.body, inner)
         make = function_maker(self.meter, "lambda", inner, body, self.cost + 1, node.lineno)
-        self.cost = outside + 4
+        self.cost = outside + STEPS_OF_DEFINITION
         return lambda f: make(f, ())
 
 

@@ -156,7 +156,7 @@ class Functions:
         if iterator.depth > MOST_ITERATORS:
             raise ProgramError("too many zip and enumerate inside each other", 0, "Make a list of one with list(...).")
         sizes = [len(value) for value in inside if value.__class__ in SIZED]
-        self.meter.spend(2 + (min(sizes) if sizes else 0))
+        self.meter.spend(2 + (min(sizes) if sizes else 0) * (2 + len(inside)) // 2)
         return iterator
 
     def reversed_of(self, values: Any, /) -> Any:

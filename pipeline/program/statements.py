@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from .arithmetic import OPERATIONS, in_place
-from .comprehensions import Comprehensions, function_maker
+from .comprehensions import STEPS_OF_DEFINITION, Comprehensions, function_maker
 from .expressions import get_item, put_item
 from .limits import Meter
 from .refusals import located
@@ -178,7 +178,7 @@ class Statements(Comprehensions):
     def run_FunctionDef(self, node: ast.FunctionDef, scope: Scope) -> tuple[Statement, bool]:
         """def name(parameters)"""
         inner = self.names.of[node]
-        self.cost += 4
+        self.cost += STEPS_OF_DEFINITION
         defaults = self.compile_all(node.args.defaults, scope)
         store = self.store(ast.Name(node.name, ast.Store()), scope)
         body, cost = self.body(node, inner)

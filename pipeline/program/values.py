@@ -26,6 +26,7 @@ MOST_KEY_ITEMS = 8
 NUMBERS: frozenset[Any] = frozenset({int, float, bool})
 SCALARS: frozenset[Any] = frozenset({int, float, bool, str, type(None)})
 CONTAINERS: frozenset[Any] = frozenset({list, tuple, dict})
+LONG: frozenset[Any] = frozenset({list, tuple, dict, str})
 SIZED: frozenset[Any] = frozenset({list, tuple, dict, str, range})
 
 
@@ -75,8 +76,8 @@ class Native:
         if not self.guarded:
             return self.call(*args, **keywords)
         for value in (*args, *keywords.values()):
-            if value.__class__ in CONTAINERS:
-                measure(self.meter, value)
+            if value.__class__ in LONG:
+                spend_argument(self.meter, value)
         return settle(self.meter, self.call(*args, **keywords))
 
 
@@ -197,11 +198,16 @@ def measure(meter: Meter, value: Any) -> int:
             raise ProgramError("a value has too many items in all")
         kinds = set(map(type, members))
         if str in kinds:
-            count += sum(len(member) for member in members if member.__class__ is str) >> 3
+            count += sum(len(member) for member in members if member.__class__ is str)
         if not kinds.isdisjoint(CONTAINERS):
             open_values.extend((member, depth + 1) for member in members if member.__class__ in CONTAINERS)
     meter.spend(count >> 2)
     return count
+
+
+def spend_argument(meter: Meter, value: Any) -> None:
+    """Count a container or text that a constructor is going to walk through, and refuse it when it is too large."""
+    meter.spend(3 * len(value) if value.__class__ is str else measure(meter, value))
 
 
 def screen(meter: Meter, values: Iterable[Any]) -> None:

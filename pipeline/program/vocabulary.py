@@ -15,7 +15,7 @@ from .values import Native, settle
 
 FREE_LINES = frozenset({"furnish", "build"})
 """Lines whose arguments may be computed; all other lines are layout lines."""
-STEPS: dict[str, int] = {"lerp": 4, "clamp": 4, "smoothstep": 4, "rand": 8, "noise": 8}
+STEPS: dict[str, int] = {"lerp": 4, "clamp": 4, "smoothstep": 4, "rand": 12, "noise": 12}
 """What a call of these constructors is counted as."""
 STEPS_OF_CONSTRUCTOR = 60
 FINITE = frozenset({"sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sqrt", "exp", "log"})

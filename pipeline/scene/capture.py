@@ -31,7 +31,9 @@ class Picture:
     method: str
 
 
-def capture(scene: Any, camera: CameraModel, long_side: int = 1024, labels: bool = False, fine: bool = False) -> Picture:
+def capture(
+    scene: Any, camera: CameraModel, long_side: int = 1024, labels: bool = False, fine: bool = False
+) -> Picture:
     """What stands in the room's collection, through a camera, in the aspect of its `image_size`.
 
     The scene that is given is not changed. `labels` writes each proxy's id at its projected centre; `fine` takes

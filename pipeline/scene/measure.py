@@ -28,6 +28,12 @@ def mesh_points(mesh: Any) -> Any:
     return points.reshape(-1, 3).astype(float)
 
 
+def box_points(size: Any) -> Any:
+    """The corners of a proxy's box in its local frame (origin at the centre of its base), (8, 3)."""
+    x, y, z = float(size[0]) / 2, float(size[1]) / 2, float(size[2])
+    return np.array([(a, b, c) for a in (-x, x) for b in (-y, y) for c in (0.0, z)])
+
+
 def matrix_yaw(matrix: Any) -> float:
     """Yaw in degrees of an object's matrix, in (-180, 180].
 

@@ -23,7 +23,20 @@ from ..program.prelude.record import Record
 from .lenses import write_camera, write_light
 from .measure import fit_matrix
 from .meshes import is_hand_made, write_shapes
-from .tags import DIGEST, FIELD, ID, KIND, LINE, NAME, PART, WAS, ensure_collections, tagged_objects, world_matrix
+from .tags import (
+    BUILT_IDS,
+    DIGEST,
+    FIELD,
+    ID,
+    KIND,
+    LINE,
+    NAME,
+    PART,
+    WAS,
+    ensure_collections,
+    tagged_objects,
+    world_matrix,
+)
 from .targets import Target, parents_first, record_targets, shapes_digest, target_digest
 
 _MATRIX_TOLERANCE = 1e-5  # metres and radians: above float32 noise, far below what an artist sees
@@ -54,6 +67,7 @@ def realise_record(record: Record, collection_name: str = "Code-as-Room", scene:
         obj = _realise(target, obj, done.get(target.parent or ""), collections[target.role])
         if not target.key[1]:
             done[target.key[0]] = obj
+    collections["room"][BUILT_IDS] = [line["id"] for line in record.proxies]
     if scene.camera is None:
         scene.camera = next((done[line["id"]] for line in record.cameras if line["id"] in done), None)
     for layer in scene.view_layers:
@@ -106,8 +120,7 @@ def _write_fields(obj: Any, target: Target, digest: str) -> None:
     if WAS in obj:
         del obj[WAS]
     for name, value in target.fields.items():
-        if obj.get(FIELD + name) != value:
-            obj[FIELD + name] = value
+        obj[FIELD + name] = value
 
 
 def _update_mesh(target: Target, obj: Any) -> Any:

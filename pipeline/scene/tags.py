@@ -13,9 +13,10 @@ KIND = "code_as_room_kind"  # "proxy", "wall", "door", "light", "camera", "floor
 NAME = "code_as_room_name"  # the name that Blender gave the object when we made it, so that a renaming is seen
 LINE = "code_as_room_line"  # digest of the line as it was built; absent on what the artist added
 WAS = "code_as_room_was"  # id before the artist renamed the object, until the program knows the new one
-FIELD = "code_as_room_"  # + category, label, placement, parent, salience, shape, wall
+FIELD = "code_as_room_"  # + category, label, placement, parent, salience, shape, furnished, box; wall; height
 ROLE = "code_as_room_role"  # on collections: "room", "shell", "layout", "lights", "cameras"
 COLOUR = "code_as_room_colour"  # on materials: "family/role"
+BUILT_IDS = "code_as_room_ids"  # on the room's collection: the ids of the proxies that were last built
 DIGEST = "code_as_room_digest"  # on meshes: digest of the shapes that they were made from
 FINGERPRINT = "code_as_room_fingerprint"  # on meshes: digest of the mesh as it stood after it was made
 

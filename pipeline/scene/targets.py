@@ -49,7 +49,9 @@ def record_targets(record: Record) -> tuple[list[Target], list[str]]:
     }
     targets = []
     for piece in pieces:
-        fields = {"wall": piece.parent or ""} if piece.kind in ("door", "window", "opening") else {}
+        fields: dict[str, Any] = {"wall": piece.parent or ""} if piece.kind in ("door", "window", "opening") else {}
+        if piece.kind == "floor" and record.room is not None:
+            fields = {"height": float(record.room["size"][2])}
         matrix = placed(piece.origin, piece.yaw)
         targets.append(
             Target((piece.id, piece.part), piece.kind, "shell", matrix, piece.shapes, "", piece.parent,
@@ -70,8 +72,8 @@ def _proxy_target(line: dict[str, Any], furnished: list[Shape] | None) -> Target
     matrix = placed((x, y, z - line["size"][2] / 2), line["yaw"])
     shapes = proxy_shapes(line) if furnished is None else furnished
     names = ("category", "label", "placement", "parent", "salience", "shape")
-    fields = {name: line[name] if line[name] is not None else "" for name in names}
-    fields["furnished"] = furnished is not None
+    fields: dict[str, Any] = {name: line[name] if line[name] is not None else "" for name in names}
+    fields |= {"furnished": furnished is not None, "box": [*line["centre"], *line["size"], line["yaw"]]}
     family = category_family(line["category"])
     return Target((line["id"], ""), "proxy", "layout", matrix, shapes, family, line["parent"], line, fields)
 

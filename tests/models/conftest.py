@@ -78,6 +78,14 @@ USAGE = b'data: {"choices": [], "usage": {"prompt_tokens": 11, "completion_token
 DONE = b"data: [DONE]\n\n"
 
 
+def stream(received: Received, *texts: str, reason: str = "stop") -> None:
+    """A whole streamed reply."""
+    received.start_stream()
+    for text in texts:
+        received.send(event(text))
+    received.send(event(None, reason) + USAGE + DONE)
+
+
 def _read_request(connection: socket.socket) -> tuple[str, dict[str, str], dict[str, Any]] | None:
     file = connection.makefile("rb")
     line = file.readline().decode().strip()
@@ -173,6 +181,7 @@ def wire() -> Any:
     class Wire:
         chat = staticmethod(chat)
         event = staticmethod(event)
+        stream = staticmethod(stream)
         threads = staticmethod(exchange_threads)
         usage = USAGE
         done = DONE

@@ -1,26 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The client when the network fails, and when the artist stops it: a clear error or a clean stop, nothing left behind."""
+"""The OpenAI-style client when the network fails: a clear error, nothing left behind."""
 
 import json
-import os
 import random
 import socket
 import struct
 import threading
-import time
 import traceback
 
 import pytest
-from code_as_room.pipeline.errors import Cancelled, ModelError, ReplyError
+from code_as_room.pipeline.errors import ModelError, ReplyError
 from code_as_room.pipeline.models.exchange import Limits
-from code_as_room.pipeline.models.faults import ServiceError
 from code_as_room.pipeline.models.openai_style import OpenAIStyleClient
 from code_as_room.pipeline.models.retry import RetryPolicy
 
 KEY = "sk-test-0123456789abcdef"
 ONCE = RetryPolicy(tries=1)
-SOON = 2.0
-"""Generous bound for what must happen within a second."""
 
 pytestmark = pytest.mark.usefixtures("no_threads_left")
 
@@ -246,123 +241,6 @@ def test_a_redirect_loop_ends(peer, a_prompt):
     assert len(peer.received) <= 5
 
 
-# Stopping -------------------------------------------------------------------------------------------------------
-
-
-def stopped_after(client, prompt, seconds):
-    """Set the cancel event after a while; how long the client then takes to stop."""
-    cancel = threading.Event()
-    stopped = []
-
-    def stop():
-        stopped.append(time.monotonic())
-        cancel.set()
-
-    timer = threading.Timer(seconds, stop)
-    timer.start()
-    with pytest.raises(Cancelled):
-        client.answer(prompt, cancel)
-    end = time.monotonic()
-    timer.join()
-    return end - stopped[0]
-
-
-def test_it_stops_while_connecting(a_prompt, wire):
-    # A listener whose queue is full lets further connections hang, as a firewall does.
-    with socket.socket() as listener:
-        listener.bind(("127.0.0.1", 0))
-        listener.listen(0)
-        port = listener.getsockname()[1]
-        fillers = []
-        for _ in range(8):
-            filler = socket.socket()
-            filler.setblocking(False)
-            filler.connect_ex(("127.0.0.1", port))
-            fillers.append(filler)
-        assert stopped_after(make(f"http://127.0.0.1:{port}/v1"), a_prompt, 0.2) < SOON
-        for filler in fillers:
-            filler.close()
-
-
-def test_it_stops_while_waiting_for_the_first_byte(peer, a_prompt, wire):
-    leave = threading.Event()
-    peer.script = lambda received: leave.wait(10)
-    assert stopped_after(make(peer.url), a_prompt, 0.2) < SOON
-    leave.set()
-
-
-@pytest.mark.parametrize("streamed", [True, False])
-def test_it_stops_in_the_middle_of_a_reply(peer, a_prompt, wire, streamed):
-    leave = threading.Event()
-
-    def script(received):
-        if streamed:
-            received.start_stream()
-            while not leave.wait(0.01):
-                received.send(wire.event("x"))
-        else:
-            received.send(b"HTTP/1.1 200 OK\r\nContent-Length: 1000\r\n\r\n{")
-            leave.wait(10)
-
-    peer.script = script
-    assert stopped_after(make(peer.url), a_prompt, 0.2) < SOON
-    leave.set()
-
-
-def test_it_stops_between_two_tries(peer, a_prompt):
-    peer.script = lambda received: received.reply(503, {"error": "busy"}, {"Retry-After": "60"})
-    assert stopped_after(make(peer.url, Limits(), RetryPolicy(5, 60.0)), a_prompt, 0.2) < SOON
-    assert len(peer.received) == 1
-
-
-def test_it_stops_while_a_large_picture_is_not_taken(a_prompt, wire):
-    from dataclasses import replace
-
-    with socket.socket() as listener:
-        listener.bind(("127.0.0.1", 0))
-        listener.listen(1)
-        client = make(f"http://127.0.0.1:{listener.getsockname()[1]}/v1")
-        assert stopped_after(client, replace(a_prompt, images=(b"\x00" * 20_000_000,)), 0.5) < SOON
-
-
-def test_stopped_before_it_began_nothing_is_sent(peer, a_prompt):
-    cancel = threading.Event()
-    cancel.set()
-    with pytest.raises(Cancelled):
-        make(peer.url).answer(a_prompt, cancel)
-    assert peer.received == []
-
-
-def test_stopping_many_at_random_moments_leaves_nothing_behind(peer, a_prompt, wire):
-    def script(received):
-        received.start_stream()
-        for _ in range(10):
-            received.send(wire.event("x"))
-            time.sleep(0.01)
-        received.send(wire.event(None, "stop") + wire.done)
-
-    peer.script = script
-    client = make(peer.url)
-    moments = random.Random(3)
-    files_before = len(os.listdir("/proc/self/fd")) if os.path.isdir("/proc/self/fd") else 0
-    for _ in range(40):
-        cancel = threading.Event()
-        timer = threading.Timer(moments.uniform(0.0, 0.12), cancel.set)
-        timer.start()
-        try:
-            assert client.answer(a_prompt, cancel).text == "x" * 10
-        except Cancelled:
-            assert cancel.is_set()
-        timer.join()
-    end = time.monotonic() + 3
-    while (wire.threads() or peer.open_now) and time.monotonic() < end:
-        time.sleep(0.02)
-    assert wire.threads() == 0 and peer.open_now == 0
-    if files_before:
-        time.sleep(0.1)
-        assert len(os.listdir("/proc/self/fd")) <= files_before + 3
-
-
 def test_many_requests_side_by_side_are_answered(peer, a_prompt, wire):
     peer.script = lambda received: received.reply(200, wire.chat("{}"))
     client = make(peer.url)
@@ -377,5 +255,29 @@ def test_many_requests_side_by_side_are_answered(peer, a_prompt, wire):
     assert texts == ["{}"] * 8
 
 
-def test_service_errors_are_model_errors():
-    assert issubclass(ServiceError, ModelError)
+# Proxies --------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def proxied(peer, monkeypatch):
+    """All traffic to other hosts goes through the peer."""
+    for name in ("http_proxy", "https_proxy"):
+        monkeypatch.setenv(name, f"http://user:secretword@127.0.0.1:{peer.port}")
+        monkeypatch.setenv(name.upper(), f"http://user:secretword@127.0.0.1:{peer.port}")
+    for name in ("no_proxy", "NO_PROXY", "all_proxy", "ALL_PROXY"):
+        monkeypatch.delenv(name, raising=False)
+    return peer
+
+
+def test_the_environments_proxy_is_used_for_other_hosts(proxied, a_prompt, wire):
+    proxied.script = lambda received: received.reply(200, wire.chat("{}"))
+    assert make("http://model.invalid/v1").answer(a_prompt, threading.Event()).text == "{}"
+    assert proxied.received[0].line.startswith("POST http://model.invalid/v1/chat/completions")
+
+
+@pytest.mark.parametrize("scheme", ["http", "https"])
+def test_a_proxy_that_asks_for_a_password_is_named_without_the_given_one(proxied, a_prompt, scheme):
+    proxied.script = lambda received: received.reply(407, {}, {"Proxy-Authenticate": "Basic"})
+    error = failure(make(f"{scheme}://model.invalid/v1"), a_prompt)
+    assert error.kind == "proxy" and "secretword" not in str(error)
+    assert all(KEY not in str(received.headers) for received in proxied.received) or scheme == "http"

@@ -247,7 +247,7 @@ NESTING = {
     "stars": "x = [" + "*" * 1000 + "a]",
     "await_chain": "x = " + "await " * 10000 + "1",
     "adversarial_mix": "x = " + "[-(not " * 3000 + "1" + ")]" * 3000,
-    "long_sum_in_brackets": "x = " + ("(" + "1+" * 90) * 20 + "1" + ")" * 20,
+    "long_sum_in_brackets": "x = " + "(" * 20 + "1" + ("+1" * 90 + ")") * 20,
 }
 
 SHADOWING = {

@@ -17,6 +17,7 @@ from code_as_room.pipeline.artifacts.layout import (
     WallLine,
     WindowLine,
 )
+from code_as_room.pipeline.program.evaluate import evaluate
 from code_as_room.pipeline.program.lines import canonical, parse_layout, print_layout
 from code_as_room.pipeline.program.patch import apply_edits, patch_text
 from code_as_room.pipeline.program.prelude.recorder import Recorder
@@ -136,3 +137,13 @@ def test_patching_the_text_and_editing_the_layout_agree(data) -> None:
     recorder = Recorder()
     for line in expected.proxies:
         recorder.proxy(**line.model_dump())  # whatever edits leave is a line that runs
+
+
+@settings(max_examples=30, deadline=None)
+@given(layouts())
+def test_a_printed_layout_runs_and_records_the_same(layout: Layout) -> None:
+    record = evaluate(print_layout(layout))
+    expected = canonical(layout)
+    assert record.built and record.room == expected.room.model_dump()
+    for name in ("walls", "doors", "windows", "openings", "proxies", "lights", "cameras"):
+        assert getattr(record, name) == [line.model_dump() for line in getattr(expected, name)]

@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Results: writing the output files, and looking at the program and the memory."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import bpy
+
+from ..pipeline.errors import OutputError, RoomError
+from . import driver, rooms, view_state
+from .base import RoomOperator, allow
+
+REPORT = "report.html"
+
+
+class CODE_AS_ROOM_OT_write_outputs(RoomOperator, bpy.types.Operator):
+    """Write the room's program, a copy of the .blend, pictures and a report to a folder"""
+
+    bl_idname = "code_as_room.write_outputs"
+    bl_label = "Write Results"
+    bl_options = {"REGISTER"}
+
+    directory: bpy.props.StringProperty(name="Folder", subtype="DIR_PATH")  # type: ignore[valid-type]
+    filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})  # type: ignore[valid-type]
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """There must be a layout, and no run."""
+        if driver.is_running():
+            return allow(cls, "A run is going on; wait for it, or stop it")
+        state = view_state.peek(context.scene)
+        return allow(cls, "" if state is None or state.has_layout else "Run the stages up to the layout first")
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Let the artist choose the folder."""
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def perform(self, context: bpy.types.Context) -> None:
+        """Write the files."""
+        from .outputs import write_outputs
+
+        scene = context.scene
+        folder = chosen_folder(self.directory)
+        run, _ = driver.make_run(scene)
+        run.backend = rooms.blender_scene(scene)
+        run.take_over_edits()
+        run.reports.extend(driver.reports_of(scene))
+        paths = write_outputs(run, folder)
+        rooms.note_results(scene, folder)
+        view_state.refresh(scene)
+        driver.note_outcome(scene, f"{len(paths)} files written to {folder.name or folder}")
+        self.report({"INFO"}, f"{len(paths)} files written to {folder}")
+
+
+def chosen_folder(directory: str) -> Path:
+    """The folder that was chosen, made when it is not there; OutputError when that cannot be."""
+    if not directory:
+        raise OutputError("No folder was chosen.", "Choose one.")
+    folder = Path(bpy.path.abspath(directory))
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(f"Nothing can be written in {folder}: {error.strerror}.", "Choose another folder.") from error
+    return folder
+
+
+class CODE_AS_ROOM_OT_open_report(RoomOperator, bpy.types.Operator):
+    """Open the report that was written last in the web browser"""
+
+    bl_idname = "code_as_room.open_report"
+    bl_label = "Open Report"
+    bl_options = {"REGISTER"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Results must have been written in this session."""
+        return allow(cls, "" if rooms.results_of(context.scene) else "Write the results first")
+
+    def perform(self, context: bpy.types.Context) -> None:
+        """Open it."""
+        folder = rooms.results_of(context.scene)
+        path = folder / REPORT if folder is not None else None
+        if path is None or not path.is_file():
+            raise RoomError("The report is not there any more.", "Write the results again.")
+        bpy.ops.wm.url_open(url=path.as_uri())
+
+
+class CODE_AS_ROOM_OT_open_text(RoomOperator, bpy.types.Operator):
+    """Show the room's program or its memory in a text editor"""
+
+    bl_idname = "code_as_room.open_text"
+    bl_label = "Open Text"
+    bl_options = {"REGISTER"}
+
+    which: bpy.props.EnumProperty(  # type: ignore[valid-type]
+        name="Text",
+        items=(
+            ("PROGRAM", "Program", "The Python text that builds the room"),
+            ("MEMORY", "Memory", "What the stages wrote, as JSON"),
+        ),
+    )
+
+    @classmethod
+    def description(cls, context: bpy.types.Context, properties: Any) -> str:
+        """The tooltip says which text."""
+        if properties.which == "PROGRAM":
+            return "Show the Python text that builds the room in a text editor"
+        return "Show what the stages wrote, as JSON, in a text editor"
+
+    def perform(self, context: bpy.types.Context) -> None:
+        """Show the text in an open text editor, else in a new window."""
+        text = rooms.room_text(context.scene, self.which)
+        if text is None:
+            raise RoomError("There is no such text yet.", "Run the stages first.")
+        show_text(context, text)
+
+
+def show_text(context: Any, text: Any) -> None:
+    """Show a text in a text editor that is open, else in a new window; without a window nothing is shown."""
+    if bpy.app.background:
+        return
+    spaces = [a.spaces.active for w in context.window_manager.windows for a in w.screen.areas if a.type == "TEXT_EDITOR"]
+    if not spaces:
+        bpy.ops.wm.window_new()
+        area = context.window_manager.windows[-1].screen.areas[0]
+        area.ui_type = "TEXT_EDITOR"
+        spaces = [area.spaces.active]
+    spaces[0].text = text
+    spaces[0].top = 0
+
+
+CLASSES = (CODE_AS_ROOM_OT_write_outputs, CODE_AS_ROOM_OT_open_report, CODE_AS_ROOM_OT_open_text)

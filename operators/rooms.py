@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A scene's room as a whole: its texts, putting it aside, and where its results were written last."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import bpy
+
+from ..pipeline.scene.backend import BlenderScene
+from ..pipeline.scene.tags import find_room_collection
+from ..pipeline.scene.texts import MEMORY, PROGRAM, find_text
+from . import driver, view_state
+
+_results: dict[int, Path] = {}
+
+
+def blender_scene(scene: Any) -> BlenderScene:
+    """The scene as the pipeline's backend; keep it no longer than the present call."""
+    return BlenderScene(scene)
+
+
+def room_text(scene: Any, which: str) -> Any | None:
+    """The text datablock of the room's "PROGRAM" or "MEMORY", None when there is none yet."""
+    room = find_room_collection(scene)
+    return find_text(room, PROGRAM if which == "PROGRAM" else MEMORY) if room is not None else None
+
+
+def put_aside(scene: Any) -> str:
+    """Remove the room that was built in this scene; its memory stays in the file as a text. Returns that text's name.
+
+    Only objects that are used nowhere but in the add-on's own collection are removed.
+    """
+    memory = room_text(scene, "MEMORY")
+    name = ""
+    if memory is not None:
+        kept = bpy.data.texts.new(f"Memory of {scene.code_as_room.picture_name or 'an earlier room'}")
+        kept.from_string(memory.as_string())
+        kept.use_fake_user = True
+        name = kept.name
+    room = find_room_collection(scene)
+    if room is not None:
+        texts = [t for t in (memory, room_text(scene, "PROGRAM")) if t is not None]
+        inside = {room, *room.children_recursive}
+        for obj in list(room.all_objects):
+            if all(owner in inside for owner in obj.users_collection):
+                bpy.data.objects.remove(obj)
+        for collection in [*room.children_recursive, room]:
+            bpy.data.collections.remove(collection)
+        for text in texts:
+            bpy.data.texts.remove(text)
+    _results.pop(scene.session_uid, None)
+    driver.forget_scene(scene.session_uid)
+    view_state.forget_failure(scene.session_uid)
+    return name
+
+
+def note_results(scene: Any, folder: Path) -> None:
+    """Remember where the results were written."""
+    _results[scene.session_uid] = folder
+
+
+def results_of(scene: Any) -> Path | None:
+    """Where the results were written last in this session."""
+    return _results.get(scene.session_uid)
+
+
+def forget_all() -> None:
+    """Another file is opened."""
+    _results.clear()
