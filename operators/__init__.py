@@ -32,11 +32,15 @@ def register() -> None:
 
     from . import handlers, properties
 
+    utils: Any = bpy.utils
+    scene_type: Any = bpy.types.Scene
+    pointer: Any = bpy.props.PointerProperty
+
     for cls in _classes():
         bpy.utils.register_class(cls)
-    bpy.types.Scene.code_as_room = bpy.props.PointerProperty(type=properties.CodeAsRoomSettings, name="Code-as-Room")
+    scene_type.code_as_room = pointer(type=properties.CodeAsRoomSettings, name="Code-as-Room")
     handlers.register()
-    _command = bpy.utils.register_cli_command(COMMAND, _run_command)
+    _command = utils.register_cli_command(COMMAND, _run_command)
 
 
 def unregister() -> None:
@@ -50,6 +54,7 @@ def unregister() -> None:
         bpy.utils.unregister_cli_command(_command)
         _command = None
     handlers.unregister()
-    del bpy.types.Scene.code_as_room
+    scene_type: Any = bpy.types.Scene
+    del scene_type.code_as_room
     for cls in reversed(_classes()):
         bpy.utils.unregister_class(cls)

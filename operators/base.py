@@ -14,10 +14,10 @@ from . import driver, view_state
 log = logging.getLogger(__name__)
 
 
-class RoomOperator:
+class RoomOperator(bpy.types.Operator):
     """Base of the operators. `perform` does the work; what it raises reaches the artist as a sentence."""
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> set[Any]:
         """Called by Blender; scripts get the sentence as a RuntimeError."""
         try:
             self.perform(context)
@@ -32,12 +32,17 @@ class RoomOperator:
         """Do the work; raises RoomError with a sentence for the artist."""
         raise NotImplementedError
 
-    def refuse(self, context: bpy.types.Context, error: BaseException) -> set[str]:
+    def refuse(self, context: bpy.types.Context, error: BaseException) -> set[Any]:
         """Show an error in the panel and in Blender's status bar."""
         problem = view_state.Problem.of(error)
         driver.note_outcome(context.scene, "", problem)
-        self.report({"ERROR"}, f"{problem.message} {problem.fix}".strip())  # type: ignore[attr-defined]
+        self.report({"ERROR"}, f"{problem.message} {problem.fix}".strip())
         return {"CANCELLED"}
+
+
+def manager(context: Any) -> Any:
+    """Blender's window manager, for pop-ups and file selectors."""
+    return context.window_manager
 
 
 def stage_blocker(context: Any) -> str:

@@ -24,7 +24,8 @@ OFFLINE = ModelError(
 
 def add_on_preferences() -> Any | None:
     """The add-on's preferences; None where it is used as a Python package and not enabled as an add-on."""
-    entry = bpy.context.preferences.addons.get(base_package or "")
+    preferences: Any = bpy.context.preferences
+    entry = preferences.addons.get(base_package or "")
     return entry.preferences if entry is not None else None
 
 

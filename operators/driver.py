@@ -70,6 +70,12 @@ def reports_of(scene: Any) -> list[StageReport]:
     return list(_reports.get(scene.session_uid, []))
 
 
+def forget_scene(uid: int) -> None:
+    """The scene's room was put aside: what was told of it does not hold any more."""
+    _outcomes.pop(uid, None)
+    _reports.pop(uid, None)
+
+
 def make_run(scene: Any) -> tuple[Run, ResolvedScene]:
     """A run for the scene's picture, memory and settings.
 
@@ -182,6 +188,8 @@ def _finish(job: Job) -> Outcome:
     else:
         view_state.note_failure(uid, progress.stage, job.error)
         outcome = Outcome(f"{progress.title or 'The run'} failed", view_state.Problem.of(job.error))
+    for notice in job.backend.notices:
+        outcome = Outcome(f"{outcome.text}. {notice}", outcome.problem)
     _outcomes[uid] = outcome
     _reports.setdefault(uid, []).extend(job.run.reports)
     _refresh(uid)

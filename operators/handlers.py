@@ -11,7 +11,7 @@ from bpy.app.handlers import persistent
 from . import driver, rooms, view_state
 
 
-@persistent
+@persistent  # type: ignore[untyped-decorator]
 def _before_load(*_: Any) -> None:
     """A run belongs to the file that is open."""
     driver.cancel_for_load()
@@ -19,7 +19,7 @@ def _before_load(*_: Any) -> None:
     view_state.forget_all()
 
 
-@persistent
+@persistent  # type: ignore[untyped-decorator]
 def _after_change(*_: Any) -> None:
     """A file was loaded, or undo or redo changed the scene and its memory together."""
     view_state.refresh_all()

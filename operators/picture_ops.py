@@ -6,13 +6,12 @@ from __future__ import annotations
 from typing import Any
 
 import bpy
-from bpy_extras.io_utils import ImportHelper
 
 from ..pipeline.errors import RoomError
 from ..pipeline.memory import Memory, load_memory
 from ..pipeline.picture import ReferencePicture, load_picture
 from . import driver, reference, rooms, view_state
-from .base import RoomOperator, allow
+from .base import RoomOperator, allow, manager
 
 
 def take_picture(scene: Any, picture: ReferencePicture, anew: bool) -> None:
@@ -47,16 +46,16 @@ def _memory(scene: Any) -> Memory:
     return load_memory(ResolvedScene(scene).load_memory())
 
 
-class CODE_AS_ROOM_OT_load_picture(RoomOperator, bpy.types.Operator, ImportHelper):
+class CODE_AS_ROOM_OT_load_picture(RoomOperator):
     """Load a picture of a room seen from above"""
 
     bl_idname = "code_as_room.load_picture"
     bl_label = "Load Picture"
     bl_options = {"REGISTER", "UNDO"}
 
-    filter_glob: bpy.props.StringProperty(  # type: ignore[valid-type]
-        default="*.png;*.jpg;*.jpeg;*.webp;*.tif;*.tiff;*.bmp", options={"HIDDEN"}
-    )
+    filepath: bpy.props.StringProperty(name="File", description="The picture", subtype="FILE_PATH")  # type: ignore[valid-type]
+    filter_image: bpy.props.BoolProperty(default=True, options={"HIDDEN"})  # type: ignore[valid-type]
+    filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})  # type: ignore[valid-type]
     anew: bpy.props.BoolProperty(  # type: ignore[valid-type]
         name="Begin a New Room",
         description="Put a room that was begun with another picture aside; its memory is kept as a text",
@@ -67,6 +66,11 @@ class CODE_AS_ROOM_OT_load_picture(RoomOperator, bpy.types.Operator, ImportHelpe
     def poll(cls, context: bpy.types.Context) -> bool:
         """Not while a run is going on."""
         return allow(cls, "A run is going on; wait for it, or stop it" if driver.is_running() else "")
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[Any]:
+        """Let the artist choose the file, among pictures."""
+        manager(context).fileselect_add(self)
+        return {"RUNNING_MODAL"}
 
     def perform(self, context: bpy.types.Context) -> None:
         """Read and normalise the file, and pack it into the .blend."""
@@ -85,7 +89,7 @@ def _open_images(self: Any, context: Any) -> list[tuple[str, str, str]]:
 _items: list[tuple[str, str, str]] = []
 
 
-class CODE_AS_ROOM_OT_use_image(RoomOperator, bpy.types.Operator):
+class CODE_AS_ROOM_OT_use_image(RoomOperator):
     """Use an image that is already open in Blender as the picture of the room"""
 
     bl_idname = "code_as_room.use_image"
@@ -107,9 +111,9 @@ class CODE_AS_ROOM_OT_use_image(RoomOperator, bpy.types.Operator):
             return allow(cls, "A run is going on; wait for it, or stop it")
         return allow(cls, "" if bpy.data.images else "No image is open in Blender")
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[Any]:
         """Let the artist search among the open images."""
-        context.window_manager.invoke_search_popup(self)
+        manager(context).invoke_search_popup(self)
         return {"RUNNING_MODAL"}
 
     def perform(self, context: bpy.types.Context) -> None:
@@ -120,7 +124,7 @@ class CODE_AS_ROOM_OT_use_image(RoomOperator, bpy.types.Operator):
         take_picture(context.scene, reference.picture_of_image(image), self.anew)
 
 
-class CODE_AS_ROOM_OT_new_room(RoomOperator, bpy.types.Operator):
+class CODE_AS_ROOM_OT_new_room(RoomOperator):
     """Begin a new room in this scene: the built room is removed, and what was answered is kept as a text"""
 
     bl_idname = "code_as_room.new_room"
@@ -135,9 +139,9 @@ class CODE_AS_ROOM_OT_new_room(RoomOperator, bpy.types.Operator):
         state = view_state.peek(context.scene)
         return allow(cls, "" if state is None or state.has_memory else "There is no room in this scene yet")
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[Any]:
         """Ask first."""
-        result: set[str] = context.window_manager.invoke_confirm(self, event)
+        result: set[Any] = manager(context).invoke_confirm(self, event)
         return result
 
     def perform(self, context: bpy.types.Context) -> None:

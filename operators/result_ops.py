@@ -10,12 +10,12 @@ import bpy
 
 from ..pipeline.errors import OutputError, RoomError
 from . import driver, rooms, view_state
-from .base import RoomOperator, allow
+from .base import RoomOperator, allow, manager
 
 REPORT = "report.html"
 
 
-class CODE_AS_ROOM_OT_write_outputs(RoomOperator, bpy.types.Operator):
+class CODE_AS_ROOM_OT_write_outputs(RoomOperator):
     """Write the room's program, a copy of the .blend, pictures and a report to a folder"""
 
     bl_idname = "code_as_room.write_outputs"
@@ -33,9 +33,9 @@ class CODE_AS_ROOM_OT_write_outputs(RoomOperator, bpy.types.Operator):
         state = view_state.peek(context.scene)
         return allow(cls, "" if state is None or state.has_layout else "Run the stages up to the layout first")
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[Any]:
         """Let the artist choose the folder."""
-        context.window_manager.fileselect_add(self)
+        manager(context).fileselect_add(self)
         return {"RUNNING_MODAL"}
 
     def perform(self, context: bpy.types.Context) -> None:
@@ -44,9 +44,9 @@ class CODE_AS_ROOM_OT_write_outputs(RoomOperator, bpy.types.Operator):
 
         scene = context.scene
         folder = chosen_folder(self.directory)
-        run, _ = driver.make_run(scene)
-        run.backend = rooms.blender_scene(scene)
+        run, backend = driver.make_run(scene)
         run.take_over_edits()
+        backend.flush()
         run.reports.extend(driver.reports_of(scene))
         paths = write_outputs(run, folder)
         rooms.note_results(scene, folder)
@@ -67,7 +67,7 @@ def chosen_folder(directory: str) -> Path:
     return folder
 
 
-class CODE_AS_ROOM_OT_open_report(RoomOperator, bpy.types.Operator):
+class CODE_AS_ROOM_OT_open_report(RoomOperator):
     """Open the report that was written last in the web browser"""
 
     bl_idname = "code_as_room.open_report"
@@ -88,7 +88,7 @@ class CODE_AS_ROOM_OT_open_report(RoomOperator, bpy.types.Operator):
         bpy.ops.wm.url_open(url=path.as_uri())
 
 
-class CODE_AS_ROOM_OT_open_text(RoomOperator, bpy.types.Operator):
+class CODE_AS_ROOM_OT_open_text(RoomOperator):
     """Show the room's program or its memory in a text editor"""
 
     bl_idname = "code_as_room.open_text"
@@ -122,10 +122,10 @@ def show_text(context: Any, text: Any) -> None:
     """Show a text in a text editor that is open, else in a new window; without a window nothing is shown."""
     if bpy.app.background:
         return
-    spaces = [a.spaces.active for w in context.window_manager.windows for a in w.screen.areas if a.type == "TEXT_EDITOR"]
+    spaces = [a.spaces.active for w in manager(context).windows for a in w.screen.areas if a.type == "TEXT_EDITOR"]
     if not spaces:
         bpy.ops.wm.window_new()
-        area = context.window_manager.windows[-1].screen.areas[0]
+        area = manager(context).windows[-1].screen.areas[0]
         area.ui_type = "TEXT_EDITOR"
         spaces = [area.spaces.active]
     spaces[0].text = text

@@ -8,29 +8,24 @@ from typing import Any
 
 import bpy
 
-from ..pipeline.scene.backend import BlenderScene
-from ..pipeline.scene.tags import find_room_collection
-from ..pipeline.scene.texts import MEMORY, PROGRAM, find_text
+from ..pipeline.scene.tags import ID, find_room_collection
+from ..pipeline.scene.texts import MEMORY, PROGRAM
 from . import driver, view_state
 
 _results: dict[int, Path] = {}
 
 
-def blender_scene(scene: Any) -> BlenderScene:
-    """The scene as the pipeline's backend; keep it no longer than the present call."""
-    return BlenderScene(scene)
-
-
 def room_text(scene: Any, which: str) -> Any | None:
     """The text datablock of the room's "PROGRAM" or "MEMORY", None when there is none yet."""
     room = find_room_collection(scene)
-    return find_text(room, PROGRAM if which == "PROGRAM" else MEMORY) if room is not None else None
+    text = room.get(PROGRAM if which == "PROGRAM" else MEMORY) if room is not None else None
+    return text if isinstance(text, bpy.types.Text) else None
 
 
 def put_aside(scene: Any) -> str:
     """Remove the room that was built in this scene; its memory stays in the file as a text. Returns that text's name.
 
-    Only objects that are used nowhere but in the add-on's own collection are removed.
+    Only what we made is removed; what the artist put into the room's collection moves to the scene's own.
     """
     memory = room_text(scene, "MEMORY")
     name = ""
@@ -41,19 +36,25 @@ def put_aside(scene: Any) -> str:
         name = kept.name
     room = find_room_collection(scene)
     if room is not None:
-        texts = [t for t in (memory, room_text(scene, "PROGRAM")) if t is not None]
-        inside = {room, *room.children_recursive}
-        for obj in list(room.all_objects):
-            if all(owner in inside for owner in obj.users_collection):
-                bpy.data.objects.remove(obj)
-        for collection in [*room.children_recursive, room]:
-            bpy.data.collections.remove(collection)
-        for text in texts:
-            bpy.data.texts.remove(text)
+        _remove_room(scene, room, [t for t in (memory, room_text(scene, "PROGRAM")) if t is not None])
     _results.pop(scene.session_uid, None)
     driver.forget_scene(scene.session_uid)
     view_state.forget_failure(scene.session_uid)
     return name
+
+
+def _remove_room(scene: Any, room: Any, texts: list[Any]) -> None:
+    inside = {room, *room.children_recursive}
+    for obj in list(room.all_objects):
+        elsewhere = any(owner not in inside for owner in obj.users_collection)
+        if ID in obj and not elsewhere:
+            bpy.data.objects.remove(obj)
+        elif not elsewhere:
+            scene.collection.objects.link(obj)
+    for collection in [*room.children_recursive, room]:
+        bpy.data.collections.remove(collection)
+    for text in texts:
+        bpy.data.texts.remove(text)
 
 
 def note_results(scene: Any, folder: Path) -> None:

@@ -9,12 +9,16 @@ running, so it only keeps the text; `flush` writes it on the main thread.
 from __future__ import annotations
 
 import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 import bpy
 
 from ..pipeline.artifacts.camera import CameraModel
 from ..pipeline.artifacts.layout import LayoutEdit
+from ..pipeline.artifacts.scene import SceneDocument
 from ..pipeline.errors import SceneError
 from ..pipeline.scene.backend import BlenderScene
 
@@ -25,37 +29,52 @@ def scene_by_uid(uid: int) -> Any | None:
 
 
 class ResolvedScene:
-    """A `SceneBackend` that outlives undo. Everything but `save_memory` on the main thread only."""
+    """A `SceneBackend` that outlives undo. Everything but `save_memory` on the main thread only.
+
+    Attributes:
+        notices: sentences for the artist on what was clamped, set aside or drawn in another way.
+    """
 
     def __init__(self, scene: Any) -> None:
         self.uid: int = scene.session_uid
+        self.notices: list[str] = []
         self._lock = threading.Lock()
         self._unsaved: str | None = None
 
-    def _scene(self) -> BlenderScene:
+    @contextmanager
+    def _scene(self) -> Iterator[BlenderScene]:
+        """The scene as it is now, for one call."""
         scene = scene_by_uid(self.uid)
         if scene is None:
             raise SceneError("The scene of this room was deleted.", "Undo that, or load the picture in another scene.")
-        return BlenderScene(scene)
+        found = BlenderScene(scene)
+        try:
+            yield found
+        finally:
+            self.notices += [n for n in found.notices if n not in self.notices]
 
     def build(self, text: str) -> None:
         """As `SceneBackend.build`."""
-        self._scene().build(text)
+        with self._scene() as scene:
+            scene.build(text)
 
     def render(self, camera: CameraModel, long_side: int, labels: bool) -> bytes:
         """As `SceneBackend.render`."""
-        return self._scene().render(camera, long_side, labels)
+        with self._scene() as scene:
+            return scene.render(camera, long_side, labels)
 
     def read_back(self) -> list[LayoutEdit]:
         """As `SceneBackend.read_back`."""
-        return self._scene().read_back()
+        with self._scene() as scene:
+            return scene.read_back()
 
     def load_memory(self) -> str:
         """As `SceneBackend.load_memory`; what was saved last, even before it was flushed."""
         with self._lock:
             if self._unsaved is not None:
                 return self._unsaved
-        return self._scene().load_memory()
+        with self._scene() as scene:
+            return scene.load_memory()
 
     def save_memory(self, text: str) -> None:
         """Keep the memory's text until `flush`; any thread."""
@@ -67,8 +86,25 @@ class ResolvedScene:
         with self._lock:
             text, self._unsaved = self._unsaved, None
         if text is not None:
-            self._scene().save_memory(text)
+            with self._scene() as scene:
+                scene.save_memory(text)
 
     def program_text(self) -> str:
         """As `SceneBackend.program_text`."""
-        return self._scene().program_text()
+        with self._scene() as scene:
+            return scene.program_text()
+
+    def render_view(self, long_side: int) -> bytes:
+        """As `SceneBackend.render_view`."""
+        with self._scene() as scene:
+            return scene.render_view(long_side)
+
+    def scene_document(self, image: str, camera: CameraModel) -> SceneDocument:
+        """As `SceneBackend.scene_document`."""
+        with self._scene() as scene:
+            return scene.scene_document(image, camera)
+
+    def save_copy(self, path: Path) -> None:
+        """As `SceneBackend.save_copy`."""
+        with self._scene() as scene:
+            scene.save_copy(path)

@@ -21,7 +21,7 @@ class StageOperator(RoomOperator):
         """Start the job; raises RoomError."""
         raise NotImplementedError
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[Any]:
         """From the window: start, and let the timer go on."""
         if bpy.app.background:
             return self.execute(context)
@@ -56,7 +56,7 @@ def stage_by_id(identifier: str) -> Stage:
     raise RoomError(f"There is no stage {identifier!r}.")
 
 
-class CODE_AS_ROOM_OT_run_stage(StageOperator, bpy.types.Operator):
+class CODE_AS_ROOM_OT_run_stage(StageOperator):
     """Run this stage; answers that were already given are used again"""
 
     bl_idname = "code_as_room.run_stage"
@@ -86,7 +86,7 @@ class CODE_AS_ROOM_OT_run_stage(StageOperator, bpy.types.Operator):
         driver.start(context.scene, [stage_by_id(self.stage)], again=True, fresh=self.fresh)
 
 
-class CODE_AS_ROOM_OT_run_all(StageOperator, bpy.types.Operator):
+class CODE_AS_ROOM_OT_run_all(StageOperator):
     """Run every stage that is not done, in order, to the end"""
 
     bl_idname = "code_as_room.run_all"
@@ -98,7 +98,7 @@ class CODE_AS_ROOM_OT_run_all(StageOperator, bpy.types.Operator):
         driver.start(context.scene, all_stages())
 
 
-class CODE_AS_ROOM_OT_stop(RoomOperator, bpy.types.Operator):
+class CODE_AS_ROOM_OT_stop(RoomOperator):
     """Stop the run; what was already answered is kept, and the next run goes on from there"""
 
     bl_idname = "code_as_room.stop"

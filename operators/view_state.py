@@ -167,10 +167,9 @@ def _with_memory(
         size = (*floor_size(calibration), calibration.height)
         kind = calibration.camera.kind
         state = replace(state, room_size=size, camera_kind=kind, error_px=calibration.error_px)
-    if program is not None and program.ledger:
-        ledger = Counter(entry.state for entry in program.ledger)
-    else:
-        ledger = Counter(detected=len(analysis.objects)) if analysis is not None else Counter()
+    states: list[str] = [entry.state for entry in program.ledger] if program is not None else []
+    if not states and analysis is not None:
+        states = ["detected"] * len(analysis.objects)
     return replace(
         state,
         stages=_rows(run, uid),
@@ -178,7 +177,7 @@ def _with_memory(
         has_layout=program is not None,
         has_memory=bool(memory.entries),
         hand_edits=len(run.hand_edits()),
-        ledger=tuple(ledger.items()),
+        ledger=tuple(Counter(states).items()),
         severities=tuple(Counter(f.severity for f in findings).items()),
         findings=tuple(findings[:MOST_FINDINGS]),
     )

@@ -18,38 +18,37 @@ STATUS = {"not run": "", "done": "done", "stale": "out of date", "failed": "fail
 SEVERITY_ICONS = {"error": "ERROR", "warning": "ERROR", "note": "INFO"}
 
 
-class RoomPanel:
+class RoomPanel(bpy.types.Panel):
     """Base of the panels."""
 
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
     bl_category = "Room"
-    layout: Any
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw from the state, or ask for it to be worked out."""
+        layout: Any = self.layout
         state = view_state.peek(context.scene)
         if state is None:
             handlers.look_soon()
-            self.layout.label(text="Reading the room", icon="TIME")
+            layout.label(text="Reading the room", icon="TIME")
             return
-        self.draw_state(context, state)
+        self.draw_state(layout, context, state)
 
-    def draw_state(self, context: Any, state: RoomState) -> None:
+    def draw_state(self, layout: Any, context: Any, state: RoomState) -> None:
         """Draw from the state."""
         raise NotImplementedError
 
 
-class CODE_AS_ROOM_PT_reference(RoomPanel, bpy.types.Panel):
+class CODE_AS_ROOM_PT_reference(RoomPanel):
     """The picture of the room."""
 
     bl_idname = "CODE_AS_ROOM_PT_reference"
     bl_label = "Reference"
     bl_order = 0
 
-    def draw_state(self, context: Any, state: RoomState) -> None:
+    def draw_state(self, layout: Any, context: Any, state: RoomState) -> None:
         """Thumbnail, name and size, and where a picture comes from."""
-        layout = self.layout
         image = context.scene.code_as_room.picture
         if image is not None and state.picture_name:
             layout.template_icon(icon_value=layout.icon(image), scale=7.0)
@@ -71,16 +70,15 @@ class CODE_AS_ROOM_PT_reference(RoomPanel, bpy.types.Panel):
             draw_sentence(layout, text, context, icon="ERROR", alert=True)
 
 
-class CODE_AS_ROOM_PT_calibration(RoomPanel, bpy.types.Panel):
+class CODE_AS_ROOM_PT_calibration(RoomPanel):
     """What is known of the room's size, and what was found."""
 
     bl_idname = "CODE_AS_ROOM_PT_calibration"
     bl_label = "Calibration"
     bl_order = 1
 
-    def draw_state(self, context: Any, state: RoomState) -> None:
+    def draw_state(self, layout: Any, context: Any, state: RoomState) -> None:
         """Known lengths, and the room that follows from them."""
-        layout = self.layout
         settings = context.scene.code_as_room
         column = layout.column()
         column.enabled = not driver.is_running()
@@ -103,17 +101,16 @@ class CODE_AS_ROOM_PT_calibration(RoomPanel, bpy.types.Panel):
             draw_sentence(layout, "Run the analysis again to use what you changed.", context, icon="FILE_REFRESH")
 
 
-class CODE_AS_ROOM_PT_stages(RoomPanel, bpy.types.Panel):
+class CODE_AS_ROOM_PT_stages(RoomPanel):
     """The stages and the run that is going on."""
 
     bl_idname = "CODE_AS_ROOM_PT_stages"
     bl_label = "Stages"
     bl_order = 2
 
-    def draw_state(self, context: Any, state: RoomState) -> None:
+    def draw_state(self, layout: Any, context: Any, state: RoomState) -> None:
         """What answers, a row a stage, progress, and how the last run ended."""
-        layout = self.layout
-        self._draw_model(context, state)
+        self._draw_model(layout, context, state)
         settings = context.scene.code_as_room
         inputs = layout.column()
         inputs.enabled = not driver.is_running()
@@ -133,25 +130,25 @@ class CODE_AS_ROOM_PT_stages(RoomPanel, bpy.types.Panel):
             big = layout.row()
             big.scale_y = 1.4
             big.operator("code_as_room.run_all", icon="PLAY")
-        self._draw_failures(context, state, progress)
+        self._draw_failures(layout, context, state, progress)
         draw_outcome(layout, context)
 
-    def _draw_model(self, context: Any, state: RoomState) -> None:
+    def _draw_model(self, layout: Any, context: Any, state: RoomState) -> None:
         if state.client_problem is not None:
             problem = state.client_problem
-            draw_sentence(self.layout, f"{problem.message} {problem.fix}".strip(), context, icon="ERROR", alert=True)
+            draw_sentence(layout, f"{problem.message} {problem.fix}".strip(), context, icon="ERROR", alert=True)
         else:
-            draw_sentence(self.layout, state.answers, context, icon="WORLD" if state.uses_model else "DESKTOP")
+            draw_sentence(layout, state.answers, context, icon="WORLD" if state.uses_model else "DESKTOP")
         package = base_package()
         if package in context.preferences.addons:
-            operator = self.layout.operator("preferences.addon_show", text="Choose Who Answers", icon="PREFERENCES")
+            operator = layout.operator("preferences.addon_show", text="Choose Who Answers", icon="PREFERENCES")
             operator.module = package
 
-    def _draw_failures(self, context: Any, state: RoomState, progress: Progress | None) -> None:
+    def _draw_failures(self, layout: Any, context: Any, state: RoomState, progress: Progress | None) -> None:
         for stage in state.stages:
             if stage.status == "failed" and (progress is None or progress.stage != stage.id):
                 text = f"{stage.title}: {stage.detail}"
-                draw_sentence(self.layout, text, context, icon="ERROR", alert=True)
+                draw_sentence(layout, text, context, icon="ERROR", alert=True)
 
 
 def draw_stage(layout: Any, stage: StageRow, progress: Progress | None) -> None:
@@ -197,7 +194,7 @@ def draw_outcome(layout: Any, context: Any) -> None:
         draw_sentence(layout, text, context, icon="ERROR", alert=True)
 
 
-class CODE_AS_ROOM_PT_room(RoomPanel, bpy.types.Panel):
+class CODE_AS_ROOM_PT_room(RoomPanel):
     """What became of what was seen."""
 
     bl_idname = "CODE_AS_ROOM_PT_room"
@@ -210,9 +207,8 @@ class CODE_AS_ROOM_PT_room(RoomPanel, bpy.types.Panel):
         state = view_state.peek(context.scene)
         return state is not None and bool(state.ledger)
 
-    def draw_state(self, context: Any, state: RoomState) -> None:
+    def draw_state(self, layout: Any, context: Any, state: RoomState) -> None:
         """Counts of objects and findings."""
-        layout = self.layout
         column = layout.column(align=True)
         column.label(text=", ".join(f"{count} {word}" for word, count in state.ledger), icon="OBJECT_DATA")
         if state.score is not None:
@@ -226,16 +222,15 @@ class CODE_AS_ROOM_PT_room(RoomPanel, bpy.types.Panel):
                 draw_sentence(layout, f"{finding.about}: {finding.message}", context)
 
 
-class CODE_AS_ROOM_PT_output(RoomPanel, bpy.types.Panel):
+class CODE_AS_ROOM_PT_output(RoomPanel):
     """What the artist takes away."""
 
     bl_idname = "CODE_AS_ROOM_PT_output"
     bl_label = "Output"
     bl_order = 4
 
-    def draw_state(self, context: Any, state: RoomState) -> None:
+    def draw_state(self, layout: Any, context: Any, state: RoomState) -> None:
         """Write the results; look at the texts."""
-        layout = self.layout
         layout.operator("code_as_room.write_outputs", icon="EXPORT")
         row = layout.row(align=True)
         row.enabled = state.has_memory

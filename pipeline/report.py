@@ -256,13 +256,18 @@ def _objects(memory: Memory) -> list[Content]:
         entry, proxy = ledger.get(item.id), proxies.pop(item.id, None)
         state = entry.state if entry else "placed" if proxy else "detected"
         stands = f"on {item.parent}" if item.parent else item.placement
-        rows.append([element("code", item.id), item.category, stands, element("span", state, of=f"chip {state}"),
+        rows.append([element("code", item.id), words(item.category), stands, element("span", state, of=f"chip {state}"),
                      *_place(proxy), entry.reason if entry else ""])  # fmt: skip
     for proxy in proxies.values():
         added = element("span", "placed", of="chip placed")
-        rows.append([element("code", proxy.id), proxy.category, proxy.placement, added, *_place(proxy), "added later"])
+        rows.append([element("code", proxy.id), words(proxy.category), proxy.placement, added, *_place(proxy), "added later"])
     intro = "Every object that was detected is here: placed, deferred to a later stage, or dropped with the reason."
     return [element("h2", "Objects"), element("p", intro), table(columns, rows)]
+
+
+def words(category: str) -> str:
+    """A category as an artist reads it."""
+    return category.replace("_", " ")
 
 
 def _proxies(program: LayoutProgram | None) -> dict[str, ProxyLine]:

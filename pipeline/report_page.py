@@ -40,7 +40,7 @@ p { margin: 6px 0; max-width: 75ch; }
 .lead { color: var(--soft); margin-top: 2px; }
 .answered { margin: 16px 0 0; padding: 9px 14px; background: var(--wash); border-left: 3px solid var(--accent);
   max-width: none; }
-dl.facts { display: grid; grid-template-columns: repeat(auto-fill, minmax(220px, 1fr)); gap: 14px 26px; margin: 22px 0 0; }
+dl.facts { display: grid; grid-template-columns: repeat(auto-fill, minmax(165px, 1fr)); gap: 14px 22px; margin: 22px 0 0; }
 dl.facts dt { color: var(--soft); font-size: 13px; }
 dl.facts dd { margin: 0; font-size: 17px; font-variant-numeric: tabular-nums; overflow-wrap: anywhere; }
 dl.facts small { display: block; color: var(--soft); font-size: 13px; }
@@ -54,6 +54,7 @@ th { text-align: left; font-weight: 600; color: var(--soft); font-size: 13px; ve
 th, td { padding: 5px 12px 5px 0; border-bottom: 1px solid var(--line); vertical-align: top; }
 td.text { overflow-wrap: anywhere; }
 th.number, td.number { text-align: right; white-space: nowrap; }
+td:first-child { white-space: nowrap; }
 tr.sum td { font-weight: 600; border-bottom: 0; }
 tr.kept td { background: #eef5f8; }
 .chip { display: inline-block; padding: 0 8px; border-radius: 9px; font-size: 12.5px; line-height: 19px;

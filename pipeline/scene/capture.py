@@ -15,12 +15,11 @@ from PIL import Image
 from ..artifacts.camera import CameraModel
 from ..errors import SceneError
 from .compat import ensure_gpu
+from .graphics import can_draw
 from .labels import draw_labels, object_labels
-from .studio import studio, visible_objects
+from .studio import cycles, studio, visible_objects
 from .tags import find_room_collection
 from .viewpoint import corner_camera
-
-_CYCLES_SAMPLES = 8
 
 
 @dataclass(frozen=True)
@@ -69,17 +68,21 @@ def _room(scene: Any) -> Any:
 
 def _draw(stage: Any) -> Picture:
     """Render with Workbench; where there is no graphics driver, with Cycles on the processor."""
-    problems = []
-    for method, prepare in (("workbench", ensure_gpu), ("cycles", lambda: _use_cycles(stage))):
+    problem = "there is no graphics driver"
+    if can_draw():
         try:
-            prepare()
-            return Picture(_rendered(stage), method)
-        except (RuntimeError, OSError, SystemError) as problem:
-            problems.append(f"{method}: {str(problem).strip() or type(problem).__name__}")
-    raise SceneError(
-        f"Blender could not draw the room ({'; '.join(problems)}).",
-        "Install a graphics driver; on a computer without one, Mesa's EGL (libegl1, libgl1-mesa-dri).",
-    )
+            ensure_gpu()
+            return Picture(_rendered(stage), "workbench")
+        except (RuntimeError, OSError, SystemError) as error:
+            problem = str(error).strip() or type(error).__name__
+    try:
+        with cycles(stage):
+            return Picture(_rendered(stage), "cycles")
+    except (RuntimeError, OSError, TypeError, AttributeError) as error:
+        raise SceneError(
+            f"Blender could not draw the room: Workbench: {problem}; Cycles: {str(error).strip()}.",
+            "Install a graphics driver; on a Linux without one, Mesa's EGL (libegl1 and libgl1-mesa-dri).",
+        ) from error
 
 
 def _rendered(stage: Any) -> bytes:
@@ -93,14 +96,6 @@ def _rendered(stage: Any) -> bytes:
     if not data:
         raise RuntimeError("the picture is empty")
     return data
-
-
-def _use_cycles(stage: Any) -> None:
-    """Few samples, flat bright light: enough to read a layout."""
-    stage.render.engine = "CYCLES"
-    stage.cycles.samples = _CYCLES_SAMPLES
-    stage.cycles.use_denoising = False
-    stage.cycles.max_bounces = 2
 
 
 def _png(image: Image.Image) -> bytes:

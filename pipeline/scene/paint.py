@@ -9,13 +9,16 @@ that depends only on where it faces, and Workbench draws it flat, with its shado
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import Any
 
 import bpy
 import numpy as np
 
+from .compat import ensure_node_tree
 from .tags import world_matrix
 
+_SHADE = "code_as_room_shade"
 _DEFAULT_COLOUR = (0.4, 0.4, 0.4)
 _SIDE_LIGHT = np.array((-0.05, -0.06, 0.0))  # vertical faces to the south and west are a little lighter
 
@@ -36,6 +39,21 @@ def painted_copy(obj: Any, made: list[Any], kerb: float | None = None) -> Any:
     return copy
 
 
+def glowing_material(objects: Iterable[Any]) -> Any:
+    """Let painted copies shine with their colours, for a renderer that knows no flat light; returns the material."""
+    material = bpy.data.materials.new("Code-as-Room Capture")
+    tree = ensure_node_tree(material)
+    tree.nodes.clear()
+    colour, light, output = (tree.nodes.new(f"ShaderNode{n}") for n in ("VertexColor", "Emission", "OutputMaterial"))
+    colour.layer_name = _SHADE
+    tree.links.new(colour.outputs["Color"], light.inputs["Color"])
+    tree.links.new(light.outputs["Emission"], output.inputs["Surface"])
+    for obj in objects:
+        obj.data.materials.clear()
+        obj.data.materials.append(material)
+    return material
+
+
 def _paint(mesh: Any, rotation: Any, kerb: float) -> None:
     """Write the colour of each face to a new active colour attribute; what is cut away is painted like a top."""
     count = len(mesh.polygons)
@@ -54,7 +72,7 @@ def _paint(mesh: Any, rotation: Any, kerb: float) -> None:
     facing[centres[2::3] > kerb] = (0.0, 0.0, 1.0)
     colours = np.array(palette)[np.clip(slots, 0, len(palette) - 1)] * _shade(facing)[:, None]
     rgba = np.concatenate([colours, np.ones((count, 1))], axis=1).astype(np.float32)
-    attribute = mesh.color_attributes.new("code_as_room_shade", "FLOAT_COLOR", "CORNER")
+    attribute = mesh.color_attributes.new(_SHADE, "FLOAT_COLOR", "CORNER")
     attribute.data.foreach_set("color", np.repeat(rgba, totals, axis=0).ravel())
     mesh.color_attributes.active_color = attribute
 

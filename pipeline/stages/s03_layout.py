@@ -64,7 +64,7 @@ class _Loop:
             yield Build(text)
             score, problems = measure(layout, self.calibration.camera, self._expected(layout, evidence))
             state = _State(number, layout, evidence, score)
-            better = self.best is None or score.measured > self.best.score.measured + GAIN
+            better = self._better(state)
             if better:
                 self.best = state
             if not better or number == self.t_max:
@@ -81,6 +81,13 @@ class _Loop:
             layout, evidence = revise(layout, wanted, self.calibration), wanted.evidence
         assert self.best is not None
         return self.best
+
+    def _better(self, state: _State) -> bool:
+        """Whether a layout is better than the best so far, both measured against what is known by now."""
+        if self.best is None:
+            return True
+        before, _ = measure(self.best.layout, self.calibration.camera, self._expected(self.best.layout, state.evidence))
+        return state.score.measured > before.measured + GAIN
 
     def _solved(self, layout: Layout, evidence: Evidence) -> Layout:
         layout = apply_hand_edits(layout, self.view.hand_edits)[0]

@@ -1,6 +1,6 @@
 """Makes the sample bedroom: `picture.png` and `truth.json` beside this file.
 
-    .venv/bin/python samples/bedroom/make.py [--out DIR] [--percent 100] [--samples 20] [--blend FILE] [--no-render]
+    .venv/bin/python samples/bedroom/make.py [--out DIR] [--percent 100] [--samples 16] [--blend FILE] [--no-render]
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--out", type=Path, default=Path(__file__).parent)
     parser.add_argument("--percent", type=int, default=100, help="size of the picture in per cent")
-    parser.add_argument("--samples", type=int, default=20)
+    parser.add_argument("--samples", type=int, default=16)
     parser.add_argument("--blend", type=Path, help="also save the scene")
     parser.add_argument("--no-render", action="store_true", help="build and check only")
     args = parser.parse_args()

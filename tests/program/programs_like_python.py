@@ -21,6 +21,7 @@ class Writer:
     def __init__(self, random: Random) -> None:
         self.random = random
         self.names = list(VARIABLES)
+        self.functions = ["abs", "lerp"]
 
     def choose(self, *options: str) -> str:
         """One of the options."""
@@ -28,9 +29,10 @@ class Writer:
 
     def program(self) -> str:
         """A whole program that ends with `def result()`."""
-        lines = ["a = 1", "b = 2.5", "c = [3, 4, 5]", "d = {'x': 1, 2: 'y'}", "e = (1, 'two', 3.0)"]
+        lines = ["a = 1", "b = 2.5", "c = [3, 4, 5]", "d = {'x': 1, 2: 'y'}", "e = (1, 'two', 3.0)", "i, j = 0, 1"]
         for name in FUNCTIONS:
             lines += self.definition(name, 0)
+            self.functions = [*FUNCTIONS[: FUNCTIONS.index(name) + 1]]
         for _ in range(self.random.randint(1, 5)):
             lines += self.statement(0, in_def=False, in_loop=False)
         lines += ["def result():", "    return [a, b, c, d, e]"]
@@ -159,9 +161,9 @@ class Writer:
             f"[(i, j) for i in {self.iterable(0)} for j in {self.iterable(0)}{self.choose('', f' if {y}')}]",
             f"{{{self.choose('i', 'str(i)')}: {x} for i in {self.iterable(0)}}}",
             f"[k(1) for k in [(lambda m: {self.element(0)}) for i in range(3)]]",
-            f"{self.choose(*FUNCTIONS)}({x}, {y})",
-            f"{self.choose(*FUNCTIONS)}({x}{self.choose('', f', q={y}')})",
-            f"{self.choose(*FUNCTIONS)}(*({x}, {y}))",
+            f"{self.choose(*self.functions)}({x}, {y})",
+            f"{self.choose(*self.functions)}({x}{self.choose('', f', q={y}')})",
+            f"{self.choose(*self.functions)}(*({x}, {y}))",
             f"f'{{{self.choose(*self.names)}}} and {{{self.choose('a', 'b')}:{self.choose('.2f', '03d', 'g', '5.1f', '4')}}}'",
             f"round({x}, {self.choose('1', '2', '-1', '0')})",
             f"{self.choose('keys', 'values', 'items')}(d)",

@@ -172,4 +172,4 @@ def radial_share(lab: Floats, top: Polygon, fit: FloorFit) -> float:
             part = edge & oblique & ((rx > 0) == right) & ((ry > 0) == below)
             total = float(weight[part].sum())
             shares.append(float(weight[part & (across < 0.12)].sum()) / total if total > 8 else 0.0)
-    return float(np.mean(sorted(shares)[:3]))
+    return [round(x,3) for x in shares] if __import__("os").environ.get("DBG") else float(np.mean(sorted(shares)[:3]))

@@ -89,18 +89,29 @@ def _absorb_slivers(board: _Board, thin: set[int], least: float) -> None:
             del board.things[key], board.touch[key]
 
 
-def _gain(a: Thing, b: Thing, border: int) -> float:
+def _solid_fill(board: _Board, key: int) -> float:
+    """Share of a thing's rectangle that it fills together with the small things that lie in it."""
+    thing = board.things[key]
+    extra = sum(board.things[o].size for o in board.touch[key]
+                if board.things[o].size < 0.5 * thing.size and _within(board.things[o], thing) > 0.95)
+    return min(1.0, (thing.size + extra) / max(thing.box.area, 1.0))
+
+
+def _gain(board: _Board, key: int, other: int) -> float:
     """How much two touching things look like one rectangle; 0 when they should stay apart."""
+    a, b, border = board.things[key], board.things[other], board.touch[key][other]
     small, large = (a, b) if a.size <= b.size else (b, a)
     if border < 0.6 * min(small.box.length, small.box.breadth):
         return 0.0
     union = joined(a, b)
-    if union.fill < 0.8:
-        return 0.0
-    if min(a.fill, b.fill) < 0.7 and small.size > 0.25 * large.size:
+    solid = _solid_fill(board, key), _solid_fill(board, other)
+    if min(solid) < 0.7 and small.size > 0.25 * large.size:
         return 0.0  # something with a bite out of it lies under something else, as a rug under a bed
-    better = union.fill - max(large.fill, 0.5 * (a.fill + b.fill))
-    return union.fill + 0.2 * better if better > -0.06 else 0.0
+    full = min(1.0, (solid[0] * a.box.area + solid[1] * b.box.area) / max(union.box.area, 1.0))
+    if min(full, union.fill + 0.3) < 0.8:
+        return 0.0
+    better = full - max(solid[0] if large is a else solid[1], 0.5 * (solid[0] + solid[1]))
+    return full + 0.2 * better if better > -0.06 else 0.0
 
 
 def _merge_rectangles(board: _Board) -> None:
@@ -108,9 +119,8 @@ def _merge_rectangles(board: _Board) -> None:
     gains: dict[tuple[int, int], float] = {}
 
     def refresh(key: int) -> None:
-        for other, border in board.touch[key].items():
-            pair = (min(key, other), max(key, other))
-            gains[pair] = _gain(board.things[key], board.things[other], border)
+        for other in board.touch[key]:
+            gains[min(key, other), max(key, other)] = _gain(board, key, other)
 
     for key in board.things:
         refresh(key)

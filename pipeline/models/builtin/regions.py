@@ -54,6 +54,22 @@ def border_contrast(labels: Ints, lab: Floats) -> tuple[Ints, Ints, Ints, Floats
     return keys // count, keys % count, length.astype(np.int64), step.astype(np.float32)
 
 
+def _bands(labels: Ints, mean: Floats, a: Ints, b: Ints) -> NDArray[np.bool_]:
+    """Pairs of areas of one hue where the darker one is a narrow band: the half shade around furniture."""
+    size = np.bincount(labels.reshape(-1))
+    edge = np.zeros(labels.shape, dtype=bool)
+    edge[:, 1:] |= labels[:, 1:] != labels[:, :-1]
+    edge[1:] |= labels[1:] != labels[:-1]
+    around = np.maximum(np.bincount(labels[edge], minlength=len(size)), 1)
+    dark = np.where(mean[a, 0] < mean[b, 0], a, b)
+    lit = np.where(mean[a, 0] < mean[b, 0], b, a)
+    narrow = size[dark] / around[dark] < 0.012 * max(labels.shape)
+    factor = mean[dark, :1] / np.maximum(mean[lit, :1], 1.0)
+    tint = np.linalg.norm(mean[dark, 1:] - mean[lit, 1:] * factor, axis=1)
+    result: NDArray[np.bool_] = narrow & (tint < 4.0) & (factor[:, 0] > 0.5) & (size[dark] < 0.5 * size[lit])
+    return result
+
+
 def soften(labels: Ints, lab: Floats, side: Ints, step: float = 2.6, apart: float = 9.0) -> Ints:
     """Join areas that meet without an edge, such as the bands of a soft shadow, where both have the same `side`.
 
@@ -70,7 +86,9 @@ def soften(labels: Ints, lab: Floats, side: Ints, step: float = 2.6, apart: floa
         close = np.linalg.norm(mean[a] - mean[b], axis=1) < apart
         zone = np.zeros(len(mean), dtype=np.int64)
         zone[labels.reshape(-1)] = side.reshape(-1)
-        join = (contrast < step) & close & (length > 3) & (zone[a] == zone[b])
+        soft = (contrast < step) & close
+        shaded = _bands(labels, mean, a, b) & (contrast < 8.0)
+        join = (soft | shaded) & (length > 3) & (zone[a] == zone[b])
         if not join.any():
             break
         labels = union(int(labels.max()) + 1, a[join], b[join])[labels]
