@@ -31,6 +31,8 @@ SMALLEST_SIDE = 64
 _MOST_BYTES = 600_000_000
 _LOSSLESS_PIXELS = 2_500_000
 _LOSSLESS_BYTES = 1_500_000
+_SAMPLE = 96
+_FLAT_COLOURS = 1500
 _OTHER_FORMAT = "Choose a PNG, JPEG or WebP picture of the room seen from above."
 
 
@@ -144,9 +146,17 @@ def read_picture(data: bytes, name: str) -> ReferencePicture:
 
 
 def encode_for_model(image: Image.Image) -> bytes:
-    """PNG where that is small (drawings, renders), else JPEG of high quality; the same pixels give the same bytes."""
-    lossless = _encoded(image, "PNG")
-    return lossless if len(lossless) <= _LOSSLESS_BYTES else _encoded(image, "JPEG", quality=90)
+    """PNG for drawings and flat renders, JPEG of high quality for the rest; the same pixels give the same bytes.
+
+    A photograph is five times smaller as JPEG, and twenty times faster to make.
+    """
+    sample = image.resize((_SAMPLE, _SAMPLE), Image.Resampling.NEAREST)
+    flat = sample.getcolors(_FLAT_COLOURS) is not None
+    if flat:
+        lossless = _encoded(image, "PNG")
+        if len(lossless) <= _LOSSLESS_BYTES:
+            return lossless
+    return _encoded(image, "JPEG", quality=92)
 
 
 def _refuse_tiny(image: Image.Image, name: str) -> None:
@@ -172,5 +182,5 @@ def _encoded(image: Image.Image, kind: str, quality: int = 95) -> bytes:
         # No chroma subsampling: thin coloured lines and small objects keep their colour.
         image.save(buffer, "JPEG", quality=quality, subsampling=0)
     else:
-        image.save(buffer, "PNG", compress_level=6)
+        image.save(buffer, "PNG", compress_level=3)
     return buffer.getvalue()

@@ -12,13 +12,14 @@ from ..artifacts.camera import CameraModel
 from ..artifacts.layout import ProxyLine
 from ..geometry.camera import project
 from ..geometry.footprint import box_corners
+from ..picture import encode_for_model
 
 COLOURS = ("#e6194b", "#0082c8", "#2aa02a", "#f58231", "#911eb4", "#008080", "#c71585", "#7a5c00")
 _BOTTOM, _TOP = (0, 1, 3, 2), (4, 5, 7, 6)
 
 
 def draw_outlines(picture: bytes, camera: CameraModel, proxies: Sequence[ProxyLine], labels: bool = True) -> bytes:
-    """The picture with each proxy's foot (thin) and top (thick) outline and its id, as PNG bytes."""
+    """The picture with each proxy's foot (thin) and top (thick) outline and its id, encoded."""
     with Image.open(io.BytesIO(picture)) as opened:
         image = opened.convert("RGB")
     draw = ImageDraw.Draw(image)
@@ -36,6 +37,4 @@ def draw_outlines(picture: bytes, camera: CameraModel, proxies: Sequence[ProxyLi
         if labels:
             x, y = (sum(pixels[i][k] for i in _TOP) / 4 for k in (0, 1))
             draw.text((x, y), proxy.id, fill=colour, font=font, anchor="mm", stroke_width=2, stroke_fill="white")
-    buffer = io.BytesIO()
-    image.save(buffer, "PNG")
-    return buffer.getvalue()
+    return encode_for_model(image)

@@ -14,7 +14,7 @@ from PIL import Image
 
 from ..artifacts.camera import CameraModel
 from ..errors import SceneError
-from .compat import ensure_gpu
+from .compat import ensure_gpu, quiet
 from .graphics import can_draw
 from .labels import draw_labels, object_labels
 from .studio import cycles, studio, visible_objects
@@ -90,7 +90,8 @@ def _rendered(stage: Any) -> bytes:
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "picture.png")
         stage.render.filepath = path
-        bpy.ops.render.render(write_still=True, scene=stage.name)
+        with quiet():
+            bpy.ops.render.render(write_still=True, scene=stage.name)
         with open(path, "rb") as file:
             data = file.read()
     if not data:

@@ -7,13 +7,17 @@ in `nodes.py`, because `room.py` carries it along.
 
 from __future__ import annotations
 
+import contextlib
+import os
+import sys
+from collections.abc import Iterator
 from typing import Any
 
 import bpy
 
 from .nodes import ensure_node_tree
 
-__all__ = ["eevee_id", "ensure_gpu", "ensure_node_tree", "set_png"]
+__all__ = ["eevee_id", "ensure_gpu", "ensure_node_tree", "quiet", "set_png"]
 
 
 def eevee_id(scene: Any) -> str:
@@ -32,6 +36,28 @@ def set_png(settings: Any) -> None:
     settings.color_mode = "RGBA"
     settings.color_depth = "8"
     settings.compression = 15
+
+
+@contextlib.contextmanager
+def quiet() -> Iterator[None]:
+    """Keep a background Blender from printing a line for each render and each file that it saves.
+
+    All versions write these straight to the process's output, past Python, and 5.0 and 4.5 have different switches
+    for some of them only. In a window nothing is changed.
+    """
+    if not bpy.app.background:
+        yield
+        return
+    sys.stdout.flush()
+    kept = os.dup(1)
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    try:
+        os.dup2(nowhere, 1)
+        yield
+    finally:
+        os.dup2(kept, 1)
+        os.close(kept)
+        os.close(nowhere)
 
 
 def ensure_gpu() -> None:

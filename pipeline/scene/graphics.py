@@ -13,6 +13,9 @@ import sys
 
 import bpy
 
+_SURFACELESS = 0x31DD  # EGL_PLATFORM_SURFACELESS_MESA
+_DEVICE = 0x313F  # EGL_PLATFORM_DEVICE_EXT
+
 
 @functools.lru_cache(maxsize=1)
 def can_draw() -> bool:
@@ -26,6 +29,11 @@ def can_draw() -> bool:
     egl.eglGetDisplay.restype = ctypes.c_void_p
     egl.eglGetDisplay.argtypes = [ctypes.c_void_p]
     egl.eglInitialize.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p]
-    display = egl.eglGetDisplay(None)
-    # The display is not terminated: Blender uses the same one.
-    return bool(display and egl.eglInitialize(display, None, None))
+    displays = [egl.eglGetDisplay(None)]
+    for_platform = getattr(egl, "eglGetPlatformDisplay", None)  # EGL 1.5
+    if for_platform is not None:
+        for_platform.restype = ctypes.c_void_p
+        for_platform.argtypes = [ctypes.c_uint, ctypes.c_void_p, ctypes.c_void_p]
+        displays += [for_platform(platform, None, None) for platform in (_SURFACELESS, _DEVICE)]
+    # The displays are not terminated: Blender uses the same ones.
+    return any(display and egl.eglInitialize(display, None, None) for display in displays)

@@ -3,7 +3,7 @@
 
 Workbench's own lights turn some walls black or tint them, and brighten others; what the critic and the artist compare
 must have the palette's colours on every upper face. So each face gets its material's viewport colour times a shade
-that depends only on where it faces, and Workbench draws it flat, with its shadows, cavity and outlines.
+that depends only on where it faces, and Workbench draws it flat, with its cavity and outlines.
 """
 
 from __future__ import annotations

@@ -10,6 +10,7 @@ from typing import Any
 import bpy
 
 from ..errors import OutputError
+from .compat import quiet
 
 
 def save_copy(path: Path) -> None:
@@ -25,7 +26,8 @@ def save_copy(path: Path) -> None:
             image.pack()
     part = path.with_name(f".{path.stem}.part.blend")
     try:
-        bpy.ops.wm.save_as_mainfile(filepath=str(part), copy=True, compress=True, relative_remap=True)
+        with quiet():
+            bpy.ops.wm.save_as_mainfile(filepath=str(part), copy=True, compress=True, relative_remap=True)
         os.replace(part, path)
     except (RuntimeError, OSError) as problem:
         part.unlink(missing_ok=True)

@@ -6,6 +6,8 @@ from __future__ import annotations
 import importlib
 import json
 import os
+import shutil
+import subprocess
 import time
 import traceback
 from collections.abc import Callable, Iterator
@@ -70,10 +72,14 @@ def show_tab() -> None:
 
 
 def shoot(name: str) -> None:
-    """A screenshot of the whole window."""
+    """A screenshot of the screen with `scrot` where there is one; Blender's own comes out black without a graphics card."""
+    path = str(SHOTS / f"{name}.png")
+    if shutil.which("scrot") and os.environ.get("DISPLAY"):
+        subprocess.run(["scrot", "--overwrite", path], check=False, timeout=30)
+        return
     window, area, sidebar = view()
     with bpy.context.temp_override(window=window, area=area, region=sidebar):
-        bpy.ops.screen.screenshot(filepath=str(SHOTS / f"{name}.png"))
+        bpy.ops.screen.screenshot(filepath=path)
 
 
 def look_from_above() -> None:

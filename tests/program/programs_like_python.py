@@ -3,12 +3,60 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Callable
 from random import Random
 
 VARIABLES = ("a", "b", "c", "d", "e")
 FUNCTIONS = ("f", "g")
-NUMBER_FUNCTIONS = ("abs", "sin", "cos", "floor", "round", "int", "float", "sqrt", "str", "bool", "len")
-LIST_FUNCTIONS = ("sum", "min", "max", "sorted", "list", "tuple", "len", "any", "all", "reversed", "enumerate", "zip")
+LITERALS = (
+    "0", "1", "2", "7", "-3", "0.5", "-2.25", "1e3", "True", "False", "None", "'x'", "'ab'", "''", "0.0", "-0.0",
+    "(1, 2)", "[]", "()", "{}", "[1, 2, 3]", "'line\\n'", "0x1f", "1_000", "'é'",
+)  # fmt: skip
+ITERABLES = (
+    "range(<0~1~3>)", "c", "d", "e", "'abc'", "zip(c, e)", "enumerate(c)", "items(d)", "reversed(c)", "[(1, 2), (3, 4)]", "<E>"
+)  # fmt: skip
+ELEMENTS = ("i", "i * 2", "(i, a)", "[i]", "(<E>, i)", "str(i) + 'x'")
+# A place is <option~option>; a capital letter is what `Writer.fill` makes of it. Signs < and > are written LT and GT.
+FORMS = (
+    "<E>",
+    "(<E> <+~-~*~/~//~%~+~*> <E>)",
+    "(<E> <+~-~*~/> <E> <+~-~*> <E>)",
+    "(<N> <+~-~*~/> <1~2~0.5~N>)",
+    "(<E> ** <0~1~2~-1~0.5>)",
+    "(<-~+~not > <E>)",
+    "(<E> <LT~LT=~GT~GT=~==~!=~in~not in> <E>)",
+    "(<E> <LT~LT=~==> <E> <LT~GT~!=> <E>)",
+    "(<E> <is~is not> None)",
+    "(<E> <and~or> <E> <and~or> <E>)",
+    "(<E> if <E> else <E>)",
+    "<N>[<E>]",
+    "<c~e~'hello'~N>[<E~>:<E~~1>:<~-1~2>]",
+    "(<E>, <E>)",
+    "[<E>, <E>, *<c~e~d>]",
+    "{<1~'k'~E>: <E>}",
+    "<abs~sin~cos~floor~round~int~float~sqrt~str~bool~len>(<E>)",
+    "<min~max>(<E>, <E>)",
+    "<sum~min~max~sorted~list~tuple~len~any~all>(<I>)",
+    "<list~tuple~sorted>(<zip~enumerate~reversed>(<I>))",
+    "sorted(<I>, key=lambda v: <str(v)~-v~v>, reverse=<True~False>)",
+    "<min~max>(<I>, key=lambda v: str(v), default=<E>)",
+    "<sum~list~any~all~max>(<G> for i in <I>)",
+    "[<G> for i in <I>]",
+    "[<G> for i in <I> if <E>]",
+    "[(i, j) for i in <I> for j in <I>]",
+    "[(i, j) for i in <I> if <E> for j in <(i, a)~range(2)> if <E>]",
+    "{<i~str(i)>: <E> for i in <I>}",
+    "[k(1) for k in [(lambda m: <G>) for i in range(3)]]",
+    "<F>(<E>, <E>)",
+    "<F>(<E>, q=<E>)",
+    "<F>(<E>)",
+    "<F>(*(<E>, <E>))",
+    "f'{<N>} and {<a~b>:<.2f~03d~g~5.1f~4>}'",
+    "round(<E>, <1~2~-1~0>)",
+    "<keys~values~items>(d)",
+    "lerp(<E>, <E>, 0.5)",
+)
 
 
 class Writer:
@@ -91,7 +139,9 @@ class Writer:
             return lines
         if kind == "for":
             target = self.choose("i", "i", "a", "i, j", "(i, j)", "c[0]")
-            lines = [f"for {target} in {self.iterable(2)}:", *self.block(depth, in_def, True)]
+            # A copy: a list that grows while it is read would keep plain Python busy for ever.
+            source = self.choose(f"list({self.iterable(2)})[:5]", "range(3)", "d", "'abc'", "zip('ab', range(3))")
+            lines = [f"for {target} in {source}:", *self.block(depth, in_def, True)]
             if self.random.random() < 0.3:
                 lines += ["else:", *self.block(depth, in_def, in_loop)]
             return lines
@@ -103,74 +153,27 @@ class Writer:
 
     def iterable(self, depth: int) -> str:
         """An expression that can often be iterated over."""
-        return self.random.choice(
-            [
-                f"range({self.random.randint(0, 4)})",
-                "c",
-                "d",
-                "e",
-                "'abc'",
-                "zip(c, e)",
-                "enumerate(c)",
-                "items(d)",
-                "reversed(c)",
-                "[(1, 2), (3, 4)]",
-                self.expression(depth),
-            ]
-        )
-
-    def literal(self) -> str:
-        """A literal."""
-        return self.choose(
-            "0", "1", "2", "7", "-3", "0.5", "-2.25", "1e3", "True", "False", "None", "'x'", "'ab'", "''", "0.0", "-0.0",
-            "(1, 2)", "[]", "()", "{}", "[1, 2, 3]", "'line\\n'", "0x1f", "1_000", "'é'",
-        )  # fmt: skip
+        return self.fill(self.random.choice(ITERABLES), depth)
 
     def expression(self, depth: int) -> str:
         """Any expression."""
         if depth <= 0:
-            return self.choose(*self.names, *self.names, "i", self.literal(), self.literal())
-        inner = [self.expression(depth - 1) for _ in range(4)]
-        w, x, y, z = inner
-        op = self.choose("+", "-", "*", "/", "//", "%", "+", "*")
-        compare = self.choose("<", "<=", ">", ">=", "==", "!=", "in", "not in")
-        forms = [
-            w,
-            f"({x} {op} {y})",
-            f"({x} {op} {y} {self.choose('+', '-', '*')} {z})",
-            f"({x} ** {self.choose('0', '1', '2', '-1', '0.5')})",
-            f"({self.choose('-', '+', 'not ')}{x})",
-            f"({x} {compare} {y})",
-            f"({x} {self.choose('<', '<=', '==')} {y} {self.choose('<', '>', '!=')} {z})",
-            f"({x} {self.choose('is', 'is not')} None)",
-            f"({x} {self.choose('and', 'or')} {y} {self.choose('and', 'or')} {z})",
-            f"({x} if {y} else {z})",
-            f"{self.choose(*self.names)}[{y}]",
-            f"{self.choose('c', 'e', 'b')}[{self.choose('', x)}:{self.choose('', y)}{self.choose('', ':-1', ':2')}]",
-            f"({x}, {y})",
-            f"[{x}, {y}, *{self.choose('c', 'e', 'd')}]",
-            f"{{{self.choose('1', repr('k'), x)}: {y}}}",
-            f"{self.choose(*NUMBER_FUNCTIONS)}({x})",
-            f"{self.choose('min', 'max')}({x}, {y})",
-            f"{self.choose(*LIST_FUNCTIONS)}({self.iterable(depth - 1)})",
-            f"{self.choose('list', 'tuple', 'sorted')}({self.choose('zip', 'enumerate')}({self.iterable(depth - 1)}))",
-            f"sorted({self.iterable(0)}, key=lambda v: {self.choose('str(v)', '-v', 'v')}, reverse={self.choose('True', 'False')})",
-            f"{self.choose('min', 'max')}({self.iterable(0)}, key=lambda v: str(v), default={x})",
-            f"{self.choose('sum', 'list', 'any', 'all', 'max')}({self.element(depth)} for i in {self.iterable(0)})",
-            f"[{self.element(depth)} for i in {self.iterable(0)}{self.choose('', f' if {x}')}]",
-            f"[(i, j) for i in {self.iterable(0)} for j in {self.iterable(0)}{self.choose('', f' if {y}')}]",
-            f"{{{self.choose('i', 'str(i)')}: {x} for i in {self.iterable(0)}}}",
-            f"[k(1) for k in [(lambda m: {self.element(0)}) for i in range(3)]]",
-            f"{self.choose(*self.functions)}({x}, {y})",
-            f"{self.choose(*self.functions)}({x}{self.choose('', f', q={y}')})",
-            f"{self.choose(*self.functions)}(*({x}, {y}))",
-            f"f'{{{self.choose(*self.names)}}} and {{{self.choose('a', 'b')}:{self.choose('.2f', '03d', 'g', '5.1f', '4')}}}'",
-            f"round({x}, {self.choose('1', '2', '-1', '0')})",
-            f"{self.choose('keys', 'values', 'items')}(d)",
-            f"lerp({x}, {y}, 0.5)",
-        ]
-        return self.random.choice(forms)
+            return self.choose(*self.names, "i", *LITERALS[: self.random.randint(1, len(LITERALS))])
+        return self.fill(self.random.choice(FORMS), depth - 1)
 
-    def element(self, depth: int) -> str:
-        """An expression in which i is likely to occur."""
-        return self.choose("i", "i * 2", "(i, a)", "[i]", f"({self.expression(depth - 1)}, i)", "str(i) + 'x'")
+    def fill(self, form: str, depth: int) -> str:
+        """The form with its places filled: E expression, N name, F function, I iterable, G element of i."""
+        makers: dict[str, Callable[[], str]] = {
+            "E": lambda: self.expression(depth),
+            "N": lambda: self.choose(*self.names),
+            "F": lambda: self.choose(*self.functions),
+            "I": lambda: self.iterable(0),
+            "G": lambda: self.fill(self.random.choice(ELEMENTS), 0),
+        }
+
+        def part(match: re.Match[str]) -> str:
+            options = match.group(1).split("~")
+            option = self.random.choice(options)
+            return makers[option]() if option in makers else option
+
+        return re.sub("<([^<>]*)>", part, form).replace("LT", "<").replace("GT", ">")

@@ -11,7 +11,7 @@ import numpy as np
 from .answer import answer_of
 from .categories import FALLBACK
 from .decode import WorkPicture
-from .depth import fit_floor, radial_share
+from .depth import fit_floor, radial_excess
 from .furnish import Item, furnish, measured_scale, nest
 from .grid import Bools, Floats, polygon_mask
 from .grouping import Thing, group_things, joined
@@ -22,7 +22,7 @@ from .plan import is_plan, sort_plan
 from .regions import Sorted, sort_areas
 
 FLOOR_SCORE = 0.12
-RADIAL_SHARE = 0.075
+RADIAL_EXCESS = 0.01
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ def _frame(picture: WorkPicture, outline: Outline, drawing: bool) -> tuple[str, 
     view, floor, shrink, vanishing = "plan" if drawing else "orthographic", inner, 1.0, (width / 2, height / 2)
     if outline.found and not drawing and min(inner.max(0) - inner.min(0)) > 40:
         fit = fit_floor(picture.lab, inner)
-        if fit is not None and fit.score > FLOOR_SCORE and radial_share(picture.lab, inner, fit) > RADIAL_SHARE:
+        if fit is not None and fit.score > FLOOR_SCORE and radial_excess(picture.lab, inner, fit) > RADIAL_EXCESS:
             view, floor, shrink, vanishing = "perspective", fit.floor, fit.shrink, fit.vanishing
     x, y = floor[:, 0], floor[:, 1]
     area = abs(float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))) / 2

@@ -142,13 +142,13 @@ def fit_floor(lab: Floats, top: Polygon) -> FloorFit | None:
     return _refined(steps, best) if best is not None else None
 
 
-def radial_share(lab: Floats, top: Polygon, fit: FloorFit) -> float:
-    """Share of the oblique edges between wall tops and floor that run towards the vanishing point.
+def radial_excess(lab: Floats, top: Polygon, fit: FloorFit) -> float:
+    """How many more of the oblique edges run towards the vanishing point than beside it (23 degrees to each side).
 
     In a perspective view these are the room's corners and the upright edges of furniture, doors and windows; seen
-    orthographically nothing runs there but chance (about 0.08). Only places are used where that direction is
-    clearly oblique, so edges along the walls say nothing. Mean of the three weakest quarters around the point, since
-    one turned chair may point anywhere.
+    orthographically nothing runs there but chance, and the result is about 0. Only places between wall tops and floor
+    are used where that direction is clearly oblique, so edges along the walls say nothing. Of the four quarters
+    around the point the middle two count, since one turned chair may point anywhere.
     """
     smooth = box_mean(lab, 1)
     dy, dx = np.zeros(lab.shape, np.float32), np.zeros(lab.shape, np.float32)
@@ -158,18 +158,24 @@ def radial_share(lab: Floats, top: Polygon, fit: FloorFit) -> float:
     gx = np.take_along_axis(dx, strongest, 2)[..., 0]
     gy = np.take_along_axis(dy, strongest, 2)[..., 0]
     shape = (lab.shape[0], lab.shape[1])
-    zone = polygon_mask(shape, inset(top, np.full(len(top), 3.0))) & ~polygon_mask(shape, inset(fit.floor, np.full(len(top), -3.0)))
+    edges = np.ones(len(top))
+    zone = polygon_mask(shape, inset(top, 3 * edges)) & ~polygon_mask(shape, inset(fit.floor, -3 * edges))
     ys, xs = np.mgrid[0 : shape[0], 0 : shape[1]] + 0.5
     rx, ry = xs - fit.vanishing[0], ys - fit.vanishing[1]
     oblique = np.minimum(np.abs(rx), np.abs(ry)) > 0.3 * np.maximum(np.abs(rx), np.abs(ry))
     size = np.hypot(gx, gy)
     edge = zone & (size > 0.6)
-    across = np.abs(gx * rx + gy * ry) / np.maximum(size * np.hypot(rx, ry), 1e-6)
+    turned = np.arctan2(gy, gx) - np.arctan2(ry, rx)  # a quarter turn where the edge is radial
     weight = np.minimum(size, 4.0)
     shares = []
     for right in (False, True):
         for below in (False, True):
             part = edge & oblique & ((rx > 0) == right) & ((ry > 0) == below)
             total = float(weight[part].sum())
-            shares.append(float(weight[part & (across < 0.12)].sum()) / total if total > 8 else 0.0)
-    return [round(x,3) for x in shares] if __import__("os").environ.get("DBG") else float(np.mean(sorted(shares)[:3]))
+            if total < 8:
+                shares.append(0.0)
+                continue
+            hits = [float(weight[part & (np.abs(np.cos(turned + offset)) < 0.12)].sum()) / total
+                    for offset in (0.0, -0.4, 0.4)]
+            shares.append(hits[0] - 0.5 * (hits[1] + hits[2]))
+    return float(np.mean(sorted(shares)[1:3]))
