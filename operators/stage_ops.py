@@ -93,6 +93,14 @@ class CODE_AS_ROOM_OT_run_all(StageOperator):
     bl_label = "Run to the End"
     bl_options = {"REGISTER"}
 
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Says why no stage can run, or that there is none left."""
+        state = view_state.peek(context.scene)
+        done = state is not None and bool(state.stages) and all(row.status == "done" for row in state.stages)
+        left = "" if not done else "Every stage is done; redo one to run it again"
+        return allow(cls, stage_blocker(context) or left)
+
     def begin(self, context: bpy.types.Context) -> None:
         """Start all stages."""
         driver.start(context.scene, all_stages())

@@ -61,7 +61,7 @@ class CODE_AS_ROOM_PT_reference(RoomPanel):
         else:
             draw_sentence(layout, "Load a picture of a room, seen from above.", context)
         row = layout.row(align=True)
-        row.operator("code_as_room.load_picture", text="Load Picture" if image is None else "Change", icon="FILE_IMAGE")
+        row.operator("code_as_room.load_picture", text="Load Picture" if image is None else "Change", icon="FILE_FOLDER")
         row.operator("code_as_room.use_image", text="", icon="IMAGE_DATA")
         if state.has_memory:
             layout.operator("code_as_room.new_room", icon="FILE_NEW")
@@ -110,14 +110,14 @@ class CODE_AS_ROOM_PT_stages(RoomPanel):
 
     def draw_state(self, layout: Any, context: Any, state: RoomState) -> None:
         """What answers, a row a stage, progress, and how the last run ended."""
-        self._draw_model(layout, context, state)
+        draw_model(layout, context, state)
         settings = context.scene.code_as_room
         inputs = layout.column()
         inputs.enabled = not driver.is_running()
         if state.uses_model:
             inputs.prop(settings, "notes", text="", placeholder="Notes to the model")
         row = inputs.row()
-        row.label(text="Layout rounds, at most")
+        row.label(text="Layout rounds")
         row.prop(settings, "iterations", text="")
         progress = driver.progress_of(context.scene)
         if state.stages:
@@ -130,25 +130,28 @@ class CODE_AS_ROOM_PT_stages(RoomPanel):
             big = layout.row()
             big.scale_y = 1.4
             big.operator("code_as_room.run_all", icon="PLAY")
-        self._draw_failures(layout, context, state, progress)
+        draw_failures(layout, context, state, progress)
         draw_outcome(layout, context)
 
-    def _draw_model(self, layout: Any, context: Any, state: RoomState) -> None:
-        if state.client_problem is not None:
-            problem = state.client_problem
-            draw_sentence(layout, f"{problem.message} {problem.fix}".strip(), context, icon="ERROR", alert=True)
-        else:
-            draw_sentence(layout, state.answers, context, icon="WORLD" if state.uses_model else "DESKTOP")
-        package = base_package()
-        if package in context.preferences.addons:
-            operator = layout.operator("preferences.addon_show", text="Choose Who Answers", icon="PREFERENCES")
-            operator.module = package
 
-    def _draw_failures(self, layout: Any, context: Any, state: RoomState, progress: Progress | None) -> None:
-        for stage in state.stages:
-            if stage.status == "failed" and (progress is None or progress.stage != stage.id):
-                text = f"{stage.title}: {stage.detail}"
-                draw_sentence(layout, text, context, icon="ERROR", alert=True)
+def draw_model(layout: Any, context: Any, state: RoomState) -> None:
+    """What answers, and where that is chosen."""
+    if state.client_problem is not None:
+        problem = state.client_problem
+        draw_sentence(layout, f"{problem.message} {problem.fix}".strip(), context, icon="ERROR", alert=True)
+    else:
+        draw_sentence(layout, state.answers, context, icon="WORLD" if state.uses_model else "DESKTOP")
+    package = base_package()
+    if package in context.preferences.addons:
+        operator = layout.operator("preferences.addon_show", text="Choose Who Answers", icon="PREFERENCES")
+        operator.module = package
+
+
+def draw_failures(layout: Any, context: Any, state: RoomState, progress: Progress | None) -> None:
+    """Why stages failed."""
+    for stage in state.stages:
+        if stage.status == "failed" and (progress is None or progress.stage != stage.id):
+            draw_sentence(layout, f"{stage.title}: {stage.detail}", context, icon="ERROR", alert=True)
 
 
 def draw_stage(layout: Any, stage: StageRow, progress: Progress | None) -> None:

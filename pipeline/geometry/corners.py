@@ -19,7 +19,7 @@ from .polygon import Floats, PolygonLike, edges, self_crossing, signed_area
 SAME_POINT = 1.0  # of 1000: nearer corners are one corner
 MIN_FLOOR_AREA = 1000.0  # of 1,000,000: below 0.1 % of the picture there is no room to measure
 MIN_THICKNESS = 0.02  # area / (extent squared): thinner outlines are lines
-SWAPPED = 0.985  # wall tops are nearer to the camera than the floor; smaller than this is a mix-up
+SWAPPED = 0.95  # wall tops are nearer to the camera than the floor; smaller than noise explains is a mix-up
 MISPLACED = 0.12  # wall tops off by more than this part of the floor's diagonal do not belong to it
 FIX = "Point the floor's corners out again, one after another around the room."
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .camera import Projector, tilt_rotation
+from .camera import NEAR, Projector, tilt_rotation
 from .least_squares import levenberg_marquardt
 from .polygon import Floats
 
@@ -80,11 +80,15 @@ class Problem:
 
     def corners(self, x: Floats) -> Floats:
         """Metric corners (N, 2)."""
+        corners: Floats = self._corners(x[None])[0]
+        return corners
+
+    def _corners(self, many: Floats) -> Floats:
         if self.known is not None:
-            return self.known
+            return np.broadcast_to(self.known, (len(many), *self.known.shape))
         count = max(self.link_x) + 1
-        shared = x[CAMERA_UNKNOWNS:]
-        return np.stack([shared[list(self.link_x)], shared[count:][list(self.link_y)]], axis=1)
+        shared = many[:, CAMERA_UNKNOWNS:]
+        return np.stack([shared[:, list(self.link_x)], shared[:, count:][:, list(self.link_y)]], axis=2)
 
     def height(self, x: Floats) -> float:
         """Wall height in metres."""
@@ -92,54 +96,77 @@ class Problem:
 
     def pixel_errors(self, x: Floats) -> Floats:
         """Reprojection errors in pixels, (M, 2), floor first, wall tops that are known after."""
-        lens, corners = self.lens(x), self.corners(x)
-        level = np.concatenate([corners, np.zeros((len(corners), 1))], axis=1)
-        errors = lens.pixels(level) - self.floor
-        if self.tops is None:
-            return errors
-        level[:, 2] = self.height(x)
-        above = (lens.pixels(level) - self.tops)[np.isfinite(self.tops[:, 0])]
-        return np.concatenate([errors, above])
+        errors: Floats = self._pixel_errors(x[None])[0]
+        return errors
+
+    def _pixel_errors(self, many: Floats) -> Floats:
+        """As `pixel_errors` for many vectors of unknowns at once, (B, M, 2): the same camera as `lens`, in bulk."""
+        rotation = _rotations(many)
+        distance = np.exp(np.minimum(12.0, many[:, DISTANCE]))
+        focal = np.exp(np.minimum(20.0, many[:, SCALE])) * (distance if self.perspective else 1.0)
+        position = distance[:, None] * rotation[:, :, 2]
+        position[:, :2] += many[:, [AIM_X, AIM_Y]]
+        corners = self._corners(many)
+        flat = corners - position[:, None, :2]
+        errors = [self._seen(flat, -position[:, 2], rotation, focal) - self.floor]
+        if self.tops is not None:
+            level = np.exp(np.minimum(5.0, many[:, HEIGHT])) - position[:, 2]
+            valid = np.isfinite(self.tops[:, 0])
+            errors.append(self._seen(flat[:, valid], level, rotation, focal) - self.tops[valid])
+        return np.concatenate(errors, axis=1)
+
+    def _seen(self, flat: Floats, level: Floats, rotation: Floats, focal: Floats) -> Floats:
+        """Pixels (B, N, 2) of points relative to the camera: (B, N, 2) across and (B,) up."""
+        local = flat @ rotation[:, :2, :] + level[:, None, None] * rotation[:, 2:3, :]
+        seen = local[:, :, :2] * (1.0, -1.0) * focal[:, None, None]
+        if self.perspective:
+            with np.errstate(divide="ignore", invalid="ignore"):
+                depth = -local[:, :, 2:]
+                seen = np.where(depth > NEAR, seen / depth, np.nan)
+        result: Floats = self.principal + seen
+        return result
 
     def error_px(self, x: Floats) -> float:
         """Root mean square distance between corners as given and as seen by the camera, pixels."""
         return float(np.sqrt(np.mean(np.sum(self.pixel_errors(x) ** 2, axis=1))))
 
-    def residuals(self, x: Floats) -> Floats:
-        """All residuals in units of their standard deviations."""
-        relative = self.pixel_errors(x).ravel() / self.sigma / ROBUST_FROM
+    def residuals(self, many: Floats) -> Floats:
+        """All residuals in units of their standard deviations, for vectors of unknowns (B, n): (B, m)."""
+        relative = self._pixel_errors(many).reshape(len(many), -1) / self.sigma / ROBUST_FROM
         # Pseudo-Huber: quadratic for small errors, linear for large ones.
         seen = np.sign(relative) * ROBUST_FROM * np.sqrt(2 * (np.sqrt(1 + relative**2) - 1))
-        return np.concatenate([seen, self._camera_priors(x), self._floor_priors(x)])
+        return np.concatenate([seen, self._camera_priors(many), self._floor_priors(many)], axis=1)
 
-    def _camera_priors(self, x: Floats) -> Floats:
+    def _camera_priors(self, many: Floats) -> Floats:
         assumed = self.assumed
         priors = [
-            (x[HEIGHT] - math.log(assumed.height)) / assumed.height_spread,
-            x[TILT_X] / assumed.tilt,
-            x[TILT_Y] / assumed.tilt,
-            x[ROLL] / assumed.roll,
+            (many[:, HEIGHT] - math.log(assumed.height)) / assumed.height_spread,
+            many[:, TILT_X] / assumed.tilt,
+            many[:, TILT_Y] / assumed.tilt,
+            many[:, ROLL] / assumed.roll,
         ]
         if self.perspective:
-            priors.append((x[SCALE] + x[DISTANCE] - math.log(assumed.focal)) / assumed.focal_spread)
-        return np.array(priors)
+            focal = many[:, SCALE] + many[:, DISTANCE]
+            priors.append((focal - math.log(assumed.focal)) / assumed.focal_spread)
+        return np.stack(priors, axis=1)
 
-    def _floor_priors(self, x: Floats) -> Floats:
+    def _floor_priors(self, many: Floats) -> Floats:
         if self.known is not None:
-            return np.zeros(0)
-        corners, assumed = self.corners(x), self.assumed
-        step = np.concatenate([corners[1:], corners[:1]]) - corners
+            return np.zeros((len(many), 0))
+        corners, assumed = self._corners(many), self.assumed
+        step = np.concatenate([corners[:, 1:], corners[:, :1]], axis=1) - corners
         # sin(2 angle) / 2: the angle to the nearer axis, smooth up to 45 degrees.
-        leaning = np.degrees(step[:, 0] * step[:, 1] / np.maximum(1e-12, (step**2).sum(axis=1))) / assumed.square
+        leaning = step[:, :, 0] * step[:, :, 1] / np.maximum(1e-12, (step**2).sum(axis=2))
+        leaning = np.degrees(leaning) / assumed.square
         slant = np.sign(leaning) * np.sqrt(np.log1p(leaning**2))  # Cauchy: a slanted wall costs a bounded amount
-        middle = corners.mean(axis=0)  # the floor may lie anywhere: keep it where the start put it
-        extent = np.maximum(1e-6, np.ptp(corners, axis=0))
+        middle = corners.sum(axis=1) / corners.shape[1]  # the floor may lie anywhere: keep it where the start put it
+        extent = np.log(np.maximum(1e-6, corners.max(axis=1) - corners.min(axis=1)))
         sizes = [
-            math.log(have / want) / assumed.size_spread
-            for have, want in ((extent[0], assumed.width), (extent[1], assumed.depth))
+            (extent[:, axis : axis + 1] - math.log(want)) / assumed.size_spread
+            for axis, want in enumerate((assumed.width, assumed.depth))
             if want is not None
         ]
-        return np.concatenate([slant, middle, sizes])
+        return np.concatenate([slant, middle, *sizes], axis=1)
 
     def active(self, x: Floats) -> Floats:
         """Which unknowns are solved for, as a mask."""
@@ -161,12 +188,16 @@ class Problem:
         mask = self.active(start) > 0
         steps = np.concatenate([STEPS, np.full(len(start) - CAMERA_UNKNOWNS, 0.05)])
 
-        def some(values: Floats) -> Floats:
-            full = start.copy()
-            full[mask] = values
+        def many(values: Floats) -> Floats:
+            full = np.repeat(start[None], len(values), axis=0)
+            full[:, mask] = values
             return self.residuals(full)
 
-        solution = levenberg_marquardt(some, start[mask], steps[mask], iterations, tolerance)
+        def one(values: Floats) -> Floats:
+            row: Floats = many(values[None])[0]
+            return row
+
+        solution = levenberg_marquardt(one, start[mask], steps[mask], iterations, tolerance, many)
         result = start.copy()
         result[mask] = solution.x
         return result, solution.cost
@@ -184,6 +215,25 @@ class Problem:
         corners = self.corners(x)
         moved = np.concatenate([x[:CAMERA_UNKNOWNS], _mean_by(corners[:, 0], link_x), _mean_by(corners[:, 1], link_y)])
         return replace(self, link_x=link_x, link_y=link_y), moved
+
+
+def _rotations(many: Floats) -> Floats:
+    """`tilt_rotation` of many vectors of unknowns, (B, 3, 3)."""
+    x, y = np.radians(many[:, TILT_X]), -np.radians(many[:, TILT_Y])
+    angle = np.hypot(x, y)
+    safe = np.where(angle > 1e-9, angle, 1.0)
+    sin, cos = np.sinc(angle / np.pi), np.cos(angle)  # sin(angle) / angle
+    versed = np.where(angle > 1e-9, (1 - cos) / safe**2, 0.5)
+    rolled = np.radians(many[:, ROLL])
+    right, up = np.cos(rolled), np.sin(rolled)
+    columns = (
+        (cos + versed * x * x, versed * x * y, -y * sin),
+        (versed * x * y, cos + versed * y * y, x * sin),
+        (y * sin, -x * sin, cos),
+    )
+    first, second, third = (np.stack(column, axis=1) for column in columns)
+    turned = (right[:, None] * first + up[:, None] * second, right[:, None] * second - up[:, None] * first, third)
+    return np.stack(turned, axis=2)
 
 
 def _mean_by(values: Floats, link: tuple[int, ...]) -> Floats:

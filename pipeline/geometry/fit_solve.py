@@ -279,9 +279,7 @@ def _squared(setup: Sighting, problem: Problem, x: Floats) -> tuple[Problem, Flo
     link_x, link_y, share = square_links(problem.corners(x), setup.floor, SQUARE_DEGREES, 1.5 * setup.noise)
     if share < SQUARE_SHARE or max(link_x) < 1 or max(link_y) < 1:
         return problem, x
-    # With nothing left over to tell the noise, corners are trusted more than the assumed lens and tilt.
-    sigma = setup.noise if setup.tops is not None else setup.noise / 3
-    strict, start = replace(problem, sigma=sigma).relinked(x, link_x, link_y)
+    strict, start = replace(problem, sigma=setup.noise).relinked(x, link_x, link_y)
     strict, found = _with_measured_noise(strict, strict.solve(start)[0])
     free, bound = _spread(problem, x), _spread(strict, found)
     # The noise may look three times as large with the walls made straight: with few corners it is known no better.

@@ -11,6 +11,7 @@ import numpy as np
 from .polygon import Floats
 
 Residuals = Callable[[Floats], Floats]
+DIFFERENCE = 1e-6  # of the typical size of a change: the step of the difference quotient
 
 
 class Solution(NamedTuple):
@@ -26,7 +27,12 @@ class Solution(NamedTuple):
 
 
 def levenberg_marquardt(
-    residuals: Residuals, start: Floats, steps: Floats, iterations: int = 60, tolerance: float = 1e-10
+    residuals: Residuals,
+    start: Floats,
+    steps: Floats,
+    iterations: int = 60,
+    tolerance: float = 1e-10,
+    many: Residuals | None = None,
 ) -> Solution:
     """Minimise the sum of squared residuals from `start` (Marquardt 1963, with a forward-difference Jacobian).
 
@@ -34,6 +40,7 @@ def levenberg_marquardt(
         residuals: unknowns (n,) to residuals (m,); where it is not finite the step is refused.
         steps: (n,) typical size of a change of each unknown; scales the damping and the difference quotient.
         tolerance: stop when the cost falls by less than this part of itself.
+        many: the same residuals for many points at once, (b, n) to (b, m), if that is faster than one by one.
 
     Returns:
         The best point seen; its cost is infinite when even the start could not be evaluated.
@@ -44,7 +51,7 @@ def levenberg_marquardt(
     damping = 1e-3
     count = 0
     while count < iterations and np.isfinite(cost) and cost > 1e-24:
-        jacobian = _jacobian(residuals, x, value, steps)
+        jacobian = _jacobian(residuals, many, x, value, steps)
         normal, gradient = jacobian.T @ jacobian, jacobian.T @ value
         improved = False
         while count < iterations and damping < 1e12:
@@ -73,11 +80,8 @@ def _cost(value: Floats) -> float:
     return total if np.isfinite(total) else np.inf
 
 
-def _jacobian(residuals: Residuals, x: Floats, value: Floats, steps: Floats) -> Floats:
-    columns = []
-    for i in range(len(x)):
-        moved = x.copy()
-        moved[i] += 1e-6 * steps[i]
-        columns.append((residuals(moved) - value) / 1e-6)
-    jacobian: Floats = np.nan_to_num(np.stack(columns, axis=1), nan=0.0, posinf=0.0, neginf=0.0)
+def _jacobian(residuals: Residuals, many: Residuals | None, x: Floats, value: Floats, steps: Floats) -> Floats:
+    moved = x + np.diag(DIFFERENCE * steps)
+    values = many(moved) if many is not None else np.stack([residuals(row) for row in moved])
+    jacobian: Floats = np.nan_to_num((values - value).T / DIFFERENCE, nan=0.0, posinf=0.0, neginf=0.0)
     return jacobian

@@ -48,9 +48,7 @@ class Limits:
 DEFAULT_LIMITS = Limits()
 """For one text from a model: a layout, an object program. Everything beyond is stopped within about a second."""
 
-FINISHED_ROOM_LIMITS = Limits(
-    text_bytes=4_194_304, steps=40_000_000, vertices=5_000_000, seconds=60.0
-)
+FINISHED_ROOM_LIMITS = Limits(text_bytes=4_194_304, steps=40_000_000, vertices=5_000_000, seconds=60.0)
 """For a finished room whose objects were each evaluated within DEFAULT_LIMITS before."""
 
 

@@ -121,7 +121,9 @@ def test_a_height_that_cannot_be_is_not_believed() -> None:
 anywhere = st.tuples(st.floats(-200, 1200), st.floats(-200, 1200))
 
 
-@settings(max_examples=40, deadline=None)
+@settings(
+    max_examples=40,
+)
 @given(st.lists(anywhere, max_size=7), st.none() | st.lists(anywhere, max_size=7), st.floats(0.5, 50))
 def test_any_corners_give_a_finite_camera_or_a_plain_error(low: list, high: list | None, width: float) -> None:
     try:

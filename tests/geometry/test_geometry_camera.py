@@ -71,7 +71,9 @@ def test_numbers_that_are_no_camera_give_a_plain_error(change: dict) -> None:
         cam.project(camera, [(0, 0, 0)])
 
 
-@settings(max_examples=20, deadline=None)
+@settings(
+    max_examples=20,
+)
 @given(camera=cameras())
 def test_blender_sees_the_same_picture(camera: CameraModel) -> None:
     bpy = pytest.importorskip("bpy")

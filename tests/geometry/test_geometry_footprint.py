@@ -9,7 +9,7 @@ from code_as_room.pipeline.artifacts.camera import CameraModel
 from code_as_room.pipeline.artifacts.common import ImageBox
 from code_as_room.pipeline.geometry import camera as cam
 from code_as_room.pipeline.geometry import footprint as fp
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 ROOM = cam.camera_straight_down("perspective", 6, 5, (1200, 1000), margin=0.15)
@@ -31,7 +31,6 @@ square_yaw = st.sampled_from([0.0, 90.0, 180.0, 270.0, -90.0])
 shapes = st.sampled_from(["box", "round"])
 
 
-@settings(deadline=None)
 @given(cameras(), place, extent, st.floats(0.01, 2.2), st.sampled_from([0.0, 0.7]), square_yaw, shapes)
 def test_lift_undoes_projection_at_right_angles(
     camera: CameraModel, at: tuple, size: tuple, height: float, base: float, yaw: float, shape: str
@@ -43,7 +42,6 @@ def test_lift_undoes_projection_at_right_angles(
     assert lifted.size == pytest.approx((*size, height), abs=4e-3)
 
 
-@settings(deadline=None)
 @given(cameras(), place, extent, st.floats(0.1, 2), st.floats(-180, 180), st.floats(0.9, 1.1))
 def test_lift_of_turned_objects_leans_on_the_hinted_ratio(
     camera: CameraModel, at: tuple, size: tuple, height: float, yaw: float, error: float
@@ -56,7 +54,6 @@ def test_lift_of_turned_objects_leans_on_the_hinted_ratio(
     assert lifted.size[0] / lifted.size[1] == pytest.approx(size[0] / size[1], rel=0.15)
 
 
-@settings(deadline=None)
 @given(cameras(), place, extent, st.floats(0.05, 2), st.floats(-180, 180), shapes)
 def test_image_box_is_the_hull_of_the_surface(
     camera: CameraModel, at: tuple, size: tuple, height: float, yaw: float, shape: str
@@ -117,7 +114,6 @@ def on_wall(wall: tuple, along: float, z: float, depth: float) -> tuple[float, f
     return ax + along * ux - uy * depth / 2, ay + along * uy + ux * depth / 2, z
 
 
-@settings(deadline=None)
 @given(
     st.sampled_from(WALLS), st.floats(0.2, 0.8), st.floats(0.3, 1.5), st.floats(0.8, 1.8), st.floats(0.3, 1.0),
     st.floats(-0.3, 0.3), st.booleans(),

@@ -21,7 +21,6 @@ def rects(draw: st.DrawFn, reach: float = 4.0, largest: float = 1.8) -> pl.Rect:
     return pl.Rect(draw(at), draw(at), draw(size), draw(size), draw(yaws))
 
 
-@settings(deadline=None)
 @given(rects(), rects())
 def test_pushing_apart_by_the_penetration_just_ends_the_overlap(a: pl.Rect, b: pl.Rect) -> None:
     found = pl.penetration(a, b)
@@ -33,7 +32,6 @@ def test_pushing_apart_by_the_penetration_just_ends_the_overlap(a: pl.Rect, b: p
     assert pl.penetration(a.moved(nx * (depth - 1e-3), ny * (depth - 1e-3)), b) is not None or depth < 1.1e-3
 
 
-@settings(deadline=None)
 @given(rects(), st.integers(0, 1000))
 def test_push_inside_is_inside_and_no_shorter_move_is(rect: pl.Rect, seed: int) -> None:
     pushed = pl.push_inside(rect, L_SHAPE)
@@ -78,7 +76,9 @@ def overlaps(rects: list[pl.Rect]) -> float:
     return sum((pl.penetration(a, b) or (0.0,))[0] for a, b in combinations(rects, 2))
 
 
-@settings(max_examples=40, deadline=None)
+@settings(
+    max_examples=40,
+)
 @given(st.lists(rects(reach=1.8, largest=0.8), min_size=2, max_size=6), st.data())
 def test_separate_never_makes_it_worse_and_keeps_its_bounds(boxes: list[pl.Rect], data: st.DataObject) -> None:
     fixed = data.draw(st.sets(st.integers(0, len(boxes) - 1), max_size=2))
@@ -93,7 +93,9 @@ def test_separate_never_makes_it_worse_and_keeps_its_bounds(boxes: list[pl.Rect]
     assert overlaps(after) + sum(outside[1]) <= overlaps(boxes) + sum(outside[0]) + 1e-6
 
 
-@settings(max_examples=40, deadline=None)
+@settings(
+    max_examples=40,
+)
 @given(rects(reach=1.4, largest=1.0), st.floats(0, 2 * math.pi), st.floats(0.05, 0.4))
 def test_two_that_overlap_in_a_roomy_floor_end_apart(a: pl.Rect, towards: float, distance: float) -> None:
     b = a.moved(distance * math.cos(towards), distance * math.sin(towards))

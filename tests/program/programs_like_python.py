@@ -75,16 +75,15 @@ class Writer:
         """One of the options."""
         return self.random.choice(options)
 
-    def program(self) -> str:
-        """A whole program that ends with `def result()`."""
-        lines = ["a = 1", "b = 2.5", "c = [3, 4, 5]", "d = {'x': 1, 2: 'y'}", "e = (1, 'two', 3.0)", "i, j = 0, 1"]
+    def pieces(self) -> list[str]:
+        """Whole statements that follow each other; the last defines result()."""
+        pieces = ["a = 1\nb = 2.5\nc = [3, 4, 5]\nd = {'x': 1, 2: 'y'}\ne = (1, 'two', 3.0)\ni, j = 0, 1"]
         for name in FUNCTIONS:
-            lines += self.definition(name, 0)
+            pieces.append("\n".join(self.definition(name, 0)))
             self.functions = [*FUNCTIONS[: FUNCTIONS.index(name) + 1]]
-        for _ in range(self.random.randint(1, 5)):
-            lines += self.statement(0, in_def=False, in_loop=False)
-        lines += ["def result():", "    return [a, b, c, d, e]"]
-        return "\n".join(lines) + "\n"
+        for _ in range(self.random.randint(3, 9)):
+            pieces.append("\n".join(self.statement(0, in_def=False, in_loop=False)))
+        return [*pieces, "def result():\n    return [a, b, c, d, e, i, j]"]
 
     def definition(self, name: str, depth: int) -> list[str]:
         """A def with up to two parameters, one of which may have a default."""
@@ -121,7 +120,9 @@ class Writer:
         if kind == "assign":
             return [f"{self.choose(*VARIABLES)} = {self.expression(3)}"]
         if kind == "augment":
-            return [f"{self.choose(*VARIABLES)} {self.choose('+=', '-=', '*=', '/=', '//=', '%=')} {self.expression(1)}"]
+            return [
+                f"{self.choose(*VARIABLES)} {self.choose('+=', '-=', '*=', '/=', '//=', '%=')} {self.expression(1)}"
+            ]
         if kind == "unpack":
             left = self.choose("a, b", "(a, b), c", "a, (b, c)", "[a, b]", "a, c[0]", "a, b, d['x']")
             return [f"{left} = {self.choose(self.expression(2), f'{self.expression(2)}, {self.expression(1)}')}"]
@@ -146,7 +147,10 @@ class Writer:
                 lines += ["else:", *self.block(depth, in_def, in_loop)]
             return lines
         if kind == "def":
-            return [*self.definition("h", depth), f"{self.choose(*VARIABLES)} = h({self.expression(1)}, {self.expression(1)})"]
+            return [
+                *self.definition("h", depth),
+                f"{self.choose(*VARIABLES)} = h({self.expression(1)}, {self.expression(1)})",
+            ]
         if kind == "return":
             return [self.choose("return", f"return {self.expression(2)}")]
         return [kind]

@@ -8,6 +8,7 @@ import math
 from typing import Any
 
 import bpy
+import code_as_room.pipeline.scene.capture
 import numpy as np
 import pytest
 from code_as_room.pipeline.artifacts.camera import CameraModel
@@ -138,6 +139,17 @@ def test_the_view_from_the_corner_shows_all_of_the_room(record: Any) -> None:
     border = np.concatenate([image[0], image[-1], image[:, 0], image[:, -1]])
     assert np.abs(border - backdrop).max() < 6
     assert (np.abs(image - backdrop).max(axis=2) > 12).mean() > 0.3
+
+
+def test_without_a_graphics_driver_cycles_draws_the_same_picture(record: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    realise_record(record)
+    drawn = capture(bpy.context.scene, CAMERAS["down"], 160)
+    monkeypatch.setattr(code_as_room.pipeline.scene.capture, "can_draw", lambda: False)
+    counts = len(bpy.data.materials), len(bpy.data.worlds), len(bpy.data.meshes)
+    fallback = capture(bpy.context.scene, CAMERAS["down"], 160)
+    assert (drawn.method, fallback.method) == ("workbench", "cycles")
+    assert np.abs(pixels(drawn.png) - pixels(fallback.png)).mean() < 6
+    assert (len(bpy.data.materials), len(bpy.data.worlds), len(bpy.data.meshes)) == counts
 
 
 def test_without_a_room_the_artist_is_told() -> None:

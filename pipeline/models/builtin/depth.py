@@ -51,23 +51,33 @@ class _Steps:
             strong = np.clip(near / least - 0.5, 0.0, 1.0)
             self.tables.append(np.pad(strong.cumsum(0), ((1, 0), (0, 0))))
 
-    def share(self, a: NDArray[np.float64], b: NDArray[np.float64]) -> float:
-        """Share (0..1) of the axis-aligned segment a-b that lies on a step; 0 outside the picture."""
-        along_x = abs(b[0] - a[0]) >= abs(b[1] - a[1])
+    def share(self, a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Shares (0..1) of axis-aligned segments a-b that lie on a step; 0 outside the picture.
+
+        Args:
+            a, b: (k, 2) ends; all segments run the same way.
+        """
+        along_x = abs(b[0, 0] - a[0, 0]) >= abs(b[0, 1] - a[0, 1])
         table = self.tables[0] if along_x else self.tables[1]
         if along_x:
-            a, b = a[::-1], b[::-1]
-        position = int(round((a[0] + b[0]) / 2))
-        low, high = int(round(min(a[1], b[1]))), int(round(max(a[1], b[1])))
-        if not 2 <= position < table.shape[1] - 2 or low < 0 or high >= table.shape[0] or high - low < 4:
-            return 0.0
-        return float(table[high, position] - table[low, position]) / (high - low)
+            a, b = a[:, ::-1], b[:, ::-1]
+        position = np.rint((a[:, 0] + b[:, 0]) / 2).astype(int)
+        low = np.rint(np.minimum(a[:, 1], b[:, 1])).astype(int)
+        high = np.rint(np.maximum(a[:, 1], b[:, 1])).astype(int)
+        valid = (position >= 2) & (position < table.shape[1] - 2) & (low >= 0) & (high < table.shape[0])
+        valid &= high - low >= 4
+        column = np.where(valid, position, 0)
+        total = table[np.where(valid, high, 0), column] - table[np.where(valid, low, 0), column]
+        result: NDArray[np.float64] = np.where(valid, total / np.maximum(high - low, 1), 0.0)
+        return result
 
 
-def _score(steps: _Steps, polygon: Polygon) -> float:
-    """Geometric mean over the edges of the share of each that lies on a colour step."""
-    shares = [steps.share(polygon[i], polygon[(i + 1) % len(polygon)]) for i in range(len(polygon))]
-    return float(np.exp(np.mean(np.log(np.maximum(shares, 0.01)))))
+def _scores(steps: _Steps, polygons: NDArray[np.float64]) -> NDArray[np.float64]:
+    """For (k, n, 2) polygons the geometric mean over the edges of the share of each that lies on a colour step."""
+    count = polygons.shape[1]
+    shares = [steps.share(polygons[:, i], polygons[:, (i + 1) % count]) for i in range(count)]
+    result: NDArray[np.float64] = np.exp(np.mean(np.log(np.maximum(shares, 0.01)), axis=0))
+    return result
 
 
 def _agreement(lab: Floats, polygon: Polygon) -> float:
@@ -107,8 +117,9 @@ def _refined(steps: _Steps, fit: FloorFit) -> FloorFit:
         a, b = polygon[index], polygon[(index + 1) % count]
         across = np.array([0.0, 1.0]) if abs((b - a)[0]) >= abs((b - a)[1]) else np.array([1.0, 0.0])
         sign = np.sign((b - a)[0]) if across[1] else -np.sign((b - a)[1])
-        trials = [(steps.share(a + sign * d * across, b + sign * d * across) - 0.01 * abs(d), d) for d in range(-3, 4)]
-        shifts[index] = max(trials)[1]
+        moves = np.arange(-3, 4)
+        offsets = sign * moves[:, None] * across
+        shifts[index] = moves[int(np.argmax(steps.share(a + offsets, b + offsets) - 0.01 * np.abs(moves)))]
     return FloorFit(inset(polygon, shifts), fit.shrink, fit.vanishing, fit.score)
 
 
@@ -126,19 +137,17 @@ def fit_floor(lab: Floats, top: Polygon) -> FloorFit | None:
     centre = (top.max(0) + top.min(0)) / 2
     middle = np.array([lab.shape[1] / 2, lab.shape[0] / 2])
     points = [c + np.array([i, j]) * 0.015 * span for c in (centre, middle) for i in range(-4, 5) for j in range(-4, 5)]
-    near = [_nearness(point, lab, top) for point in points]
-    trials = []
-    for shrink in np.arange(0.96, 0.42, -0.01):
-        for point, weight in zip(points, near, strict=True):
-            polygon = point + shrink * (top - point)
-            trials.append((weight * _score(steps, polygon), float(shrink), point))
-    trials.sort(key=lambda t: -t[0])
+    near = np.array([_nearness(point, lab, top) for point in points])
+    shrinks = np.repeat(np.arange(0.96, 0.42, -0.01), len(points))
+    about = np.tile(np.array(points), (len(shrinks) // len(points), 1))
+    polygons = about[:, None] + shrinks[:, None, None] * (top[None] - about[:, None])
+    scores = np.tile(near, len(shrinks) // len(points)) * _scores(steps, polygons)
     best: FloorFit | None = None
-    for score, shrink, point in trials[:40]:
-        polygon = point + shrink * (top - point)
-        total = score * _agreement(lab, polygon)
+    for index in np.argsort(-scores, kind="stable")[:40].tolist():
+        total = float(scores[index]) * _agreement(lab, polygons[index])
         if best is None or total > best.score:
-            best = FloorFit(polygon, shrink, (float(point[0]), float(point[1])), total)
+            point = (float(about[index, 0]), float(about[index, 1]))
+            best = FloorFit(polygons[index], float(shrinks[index]), point, total)
     return _refined(steps, best) if best is not None else None
 
 

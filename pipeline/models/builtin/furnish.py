@@ -42,21 +42,23 @@ class Item:
     directed: bool = False
 
 
-def _share_inside(inner: OrientedBox, outer: OrientedBox) -> float:
-    """Share of the inner box that lies in the outer one, from a 7 x 7 grid of its points."""
+def _grid(box: OrientedBox) -> NDArray[np.float64]:
+    """7 x 7 points spread evenly over a box."""
     steps = (np.arange(7) + 0.5) / 7
-    a, b, _, d = inner.corners()
-    grid = np.array([a + (b - a) * s + (d - a) * t for s in steps for t in steps])
-    return float(outer.contains(grid).mean())
+    a, b, _, d = box.corners()
+    points = a + (b - a) * steps[:, None, None] + (d - a) * steps[None, :, None]
+    return points.reshape(-1, 2)
 
 
 def _shares(things: list[Thing]) -> NDArray[np.float64]:
     """[i, j]: share of thing i that lies in thing j's box."""
     shares: NDArray[np.float64] = np.zeros((len(things), len(things)))
-    for i, inner in enumerate(things):
-        for j, outer in enumerate(things):
-            if i != j:
-                shares[i, j] = _share_inside(inner.box, outer.box)
+    grids = [_grid(thing.box) for thing in things]
+    bounds = [thing.box.bounds() for thing in things]
+    for i, (x0, y0, x1, y1) in enumerate(bounds):
+        for j, (u0, v0, u1, v1) in enumerate(bounds):
+            if i != j and x0 < u1 and u0 < x1 and y0 < v1 and v0 < y1:
+                shares[i, j] = things[j].box.contains(grids[i]).mean()
     return shares
 
 
@@ -104,11 +106,14 @@ def _is_rug(j: int, things: list[Thing], shares: NDArray[np.float64], frame: Fra
             hidden += over
     if hidden > 0.12 and outer.fill < 0.88 and outer.fill + hidden > 0.7:
         return True
+    short = min(outer.box.length, outer.box.breadth) * frame.scale
+    beside = [c for c in contacts(frame, frame.footprint(outer.box, 0.0)) if c.gap < 0.1]
+    if not beside and area > 1.9 and short > 1.15:
+        return True  # too large for a table, and beds stand at walls
     on_top = [i for i in range(len(things)) if i != j and shares[i, j] > 0.8 and things[i].box.area * square > 0.14
               and min(things[i].box.length, things[i].box.breadth) * frame.scale > 0.28]
     if area < 1.2 or not on_top:
         return False
-    beside = [c for c in contacts(frame, frame.footprint(outer.box, 0.0)) if c.gap < 0.1]
     if beside:
         return False
     offsets = [np.array(things[i].box.centre) - np.array(outer.box.centre) for i in on_top]

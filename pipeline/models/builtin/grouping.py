@@ -103,6 +103,8 @@ def _gain(board: _Board, key: int, other: int) -> float:
     small, large = (a, b) if a.size <= b.size else (b, a)
     if border < 0.6 * min(small.box.length, small.box.breadth):
         return 0.0
+    if small.size < 0.5 * large.size and _within(small, large) > 0.95:
+        return 0.0  # what lies on something is no part of its outline
     union = joined(a, b)
     solid = _solid_fill(board, key), _solid_fill(board, other)
     if min(solid) < 0.7 and small.size > 0.25 * large.size:

@@ -114,8 +114,13 @@ def _islands(labels: Ints, lab: Floats, candidates: Ints, floor_size: float) -> 
     short = np.sqrt(floor_size)
     a, b, length, contrast = border_contrast(labels, lab)
     found = []
+    size = np.bincount(labels.reshape(-1))
     for area in candidates:
-        mask = filled(labels == area)
+        if not 0.003 * floor_size < size[area] < 0.35 * floor_size:
+            continue
+        rows, columns = np.nonzero(labels == area)
+        crop = labels[rows.min() : rows.max() + 1, columns.min() : columns.max() + 1]
+        mask = filled(np.pad(crop == area, 1))
         if not 0.006 * floor_size < mask.sum() < 0.35 * floor_size:
             continue
         hull = convex_hull(outline_points(mask))
