@@ -26,7 +26,7 @@ benchmark: setup
 	$(RUN)/python -m benchmark.run
 
 test-desktop:
-	$(BLENDER) --factory-startup --python-exit-code 1 --python tests/desktop/run_panel.py
+	$(RUN)/python tests/desktop/run_panel.py --blender "$(BLENDER)"
 
 setup: $(VENV)/.ready
 

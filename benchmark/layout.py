@@ -53,7 +53,7 @@ def _apart(a: float | None, b: float | None) -> float:
 
 
 def _standing(room: Room) -> list[Thing]:
-    return [t for t in room.things if t.major and t.placement == "floor"]
+    return [t for t in room.things if t.major and t.placement == "floor" and not t.flat]
 
 
 def _worst_overlap(room: Room) -> float:

@@ -19,7 +19,10 @@ Polygon = list[tuple[float, float]]
 
 @dataclass(frozen=True)
 class Thing:
-    """One object: category words, footprint in the unit frame, placement, yaw in degrees (None when it has no front)."""
+    """One object: category words, footprint in the unit frame, placement, yaw in degrees (None when it has no front).
+
+    `flat` things (rugs) may lie under others.
+    """
 
     id: str
     category: str
@@ -28,6 +31,7 @@ class Thing:
     parent: str | None
     major: bool
     yaw: float | None
+    flat: bool = False
 
 
 @dataclass(frozen=True)
@@ -64,7 +68,7 @@ def _scene(data: dict[str, Any], floor: list[list[float]], salience: str | None)
         large = item["placement"] == "floor" and not flat and max(item["size"][:2]) > 0.35
         major = item[salience] == "major" if salience else large
         things.append(
-            Thing(item["id"], item["category"], footprint, item["placement"], item["parent"], major, item["yaw"])
+            Thing(item["id"], item["category"], footprint, item["placement"], item["parent"], major, item["yaw"], flat)
         )
     return Room(size, unit(floor), things)
 

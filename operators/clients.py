@@ -96,9 +96,7 @@ class GuardedClient:
         """Look whether online access is on. Main thread only."""
         self.online = bool(bpy.app.online_access)
 
-    def answer(
-        self, prompt: Prompt, cancel: threading.Event, progress: Callable[[str], None] | None = None
-    ) -> Reply:
+    def answer(self, prompt: Prompt, cancel: threading.Event, progress: Callable[[str], None] | None = None) -> Reply:
         """As `ModelClient.answer`; ModelError when online access was switched off."""
         if not self.online:
             raise ModelError(OFFLINE.message, OFFLINE.fix)
@@ -117,9 +115,7 @@ class _Nobody:
     name = ""
     describes = ""
 
-    def answer(
-        self, prompt: Prompt, cancel: threading.Event, progress: Callable[[str], None] | None = None
-    ) -> Reply:
+    def answer(self, prompt: Prompt, cancel: threading.Event, progress: Callable[[str], None] | None = None) -> Reply:
         """Always ModelError."""
         raise ModelError("There is no model to ask.")
 

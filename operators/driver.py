@@ -10,7 +10,7 @@ from __future__ import annotations
 import logging
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import bpy
@@ -32,10 +32,11 @@ _PATIENCE = 0.2
 
 @dataclass(frozen=True)
 class Outcome:
-    """How the last job of a scene ended: a sentence, and what went wrong."""
+    """How the last job of a scene ended: a sentence, what went wrong, and what the scene's building had to say."""
 
     text: str
     problem: view_state.Problem | None = None
+    notices: tuple[str, ...] = ()
 
 
 _job: Job | None = None
@@ -188,8 +189,7 @@ def _finish(job: Job) -> Outcome:
     else:
         view_state.note_failure(uid, progress.stage, job.error)
         outcome = Outcome(f"{progress.title or 'The run'} failed", view_state.Problem.of(job.error))
-    for notice in job.backend.notices:
-        outcome = Outcome(f"{outcome.text}. {notice}", outcome.problem)
+    outcome = replace(outcome, notices=tuple(job.backend.notices))
     _outcomes[uid] = outcome
     _reports.setdefault(uid, []).extend(job.run.reports)
     _refresh(uid)

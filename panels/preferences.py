@@ -33,7 +33,11 @@ class CodeAsRoomPreferences(bpy.types.AddonPreferences):
         description="Who looks at the picture",
         items=(
             ("BUILTIN", "Built-in analysis", "No model and no network: the picture is measured on this computer"),
-            ("OPENAI", "Model service", "Any service with an OpenAI-style address, on this computer or on the internet"),
+            (
+                "OPENAI",
+                "Model service",
+                "Any service with an OpenAI-style address, on this computer or on the internet",
+            ),
             ("RECORDED", "Recorded answers", "Play back answers that were recorded in a folder, as with the samples"),
         ),
         default="BUILTIN",
@@ -46,7 +50,9 @@ class CodeAsRoomPreferences(bpy.types.AddonPreferences):
         update=_changed,
     )
     model: bpy.props.StringProperty(  # type: ignore[valid-type]
-        name="Model", description="The model's name as the service spells it; it must understand pictures", update=_changed
+        name="Model",
+        description="The model's name as the service spells it; it must understand pictures",
+        update=_changed,
     )
     api_key: bpy.props.StringProperty(  # type: ignore[valid-type]
         name="API Key",

@@ -15,6 +15,7 @@ from .sentences import draw_sentence, plural
 
 ICONS = {"not run": "RADIOBUT_OFF", "done": "CHECKMARK", "stale": "FILE_REFRESH", "failed": "ERROR"}
 STATUS = {"not run": "", "done": "done", "stale": "out of date", "failed": "failed"}
+MOST_NOTICES = 3
 SEVERITY_ICONS = {"error": "ERROR", "warning": "ERROR", "note": "INFO"}
 
 
@@ -61,7 +62,9 @@ class CODE_AS_ROOM_PT_reference(RoomPanel):
         else:
             draw_sentence(layout, "Load a picture of a room, seen from above.", context)
         row = layout.row(align=True)
-        row.operator("code_as_room.load_picture", text="Load Picture" if image is None else "Change", icon="FILE_FOLDER")
+        row.operator(
+            "code_as_room.load_picture", text="Load Picture" if image is None else "Change", icon="FILE_FOLDER"
+        )
         row.operator("code_as_room.use_image", text="", icon="IMAGE_DATA")
         if state.has_memory:
             layout.operator("code_as_room.new_room", icon="FILE_NEW")
@@ -191,6 +194,10 @@ def draw_outcome(layout: Any, context: Any) -> None:
         return
     if outcome.text:
         draw_sentence(layout, outcome.text, context)
+    for notice in outcome.notices[:MOST_NOTICES]:
+        draw_sentence(layout, notice, context, icon="INFO")
+    if len(outcome.notices) > MOST_NOTICES:
+        layout.label(text=f"and {len(outcome.notices) - MOST_NOTICES} more")
     shown = [row.status for row in getattr(view_state.peek(context.scene), "stages", ())]
     if outcome.problem is not None and "failed" not in shown:
         text = f"{outcome.problem.message} {outcome.problem.fix}".strip()

@@ -260,7 +260,9 @@ def _objects(memory: Memory) -> list[Content]:
                      *_place(proxy), entry.reason if entry else ""])  # fmt: skip
     for proxy in proxies.values():
         added = element("span", "placed", of="chip placed")
-        rows.append([element("code", proxy.id), words(proxy.category), proxy.placement, added, *_place(proxy), "added later"])
+        rows.append(
+            [element("code", proxy.id), words(proxy.category), proxy.placement, added, *_place(proxy), "added later"]
+        )
     intro = "Every object that was detected is here: placed, deferred to a later stage, or dropped with the reason."
     return [element("h2", "Objects"), element("p", intro), table(columns, rows)]
 
@@ -304,5 +306,7 @@ def _findings(memory: Memory) -> list[Content]:
         group = [f for f in found if f.severity == severity]
         if group:
             items = [element("li", element("code", f.about), " ", f.message) for f in group]
-            parts.append(element("section", element("h3", f"{title} ({len(group)})"), element("ul", *items), of=severity))
+            parts.append(
+                element("section", element("h3", f"{title} ({len(group)})"), element("ul", *items), of=severity)
+            )
     return parts

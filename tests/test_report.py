@@ -147,9 +147,13 @@ def test_room_size_scale_and_camera_are_told() -> None:
 
 
 def test_says_what_answered() -> None:
-    assert "No model: the built-in picture analysis" in make_report(room(), {}, (), "No model: the built-in picture analysis")
+    assert "No model: the built-in picture analysis" in make_report(
+        room(), {}, (), "No model: the built-in picture analysis"
+    )
     mixed = room()
-    meta = EntryMeta(time="2026-11-22T10:00:00+00:00", client="openai:big-1", model="big-1", cost=0.25, prompt_tokens=900)
+    meta = EntryMeta(
+        time="2026-11-22T10:00:00+00:00", client="openai:big-1", model="big-1", cost=0.25, prompt_tokens=900
+    )
     mixed.keep_answer("s03_layout", "03_critique/0", "{}", meta)
     text = Page(make_report(mixed, {}, (), "big-1 at example.com")).text
     assert "the built-in picture analysis, no model (builtin); openai:big-1 (big-1)" in text

@@ -26,18 +26,22 @@ Floats = npt.NDArray[np.float64]
 
 BOX_SIGMA = 6.0
 """Usual error of a picture box's edge, in 0-1000 of the picture's longer side."""
-CENTRE_SIGMA = 0.012
+CENTRE_SIGMA = 0.008
 """Usual error of a centre in metres, as a part of the room's longer side."""
 SIZE_SIGMA = 0.08
 HEIGHT_SIGMA = 0.2
 """Usual relative errors of width and depth, and of height."""
 LOOSE = 4.0
 """How much the metres of a thing count less when they were guessed from a box that proved wrong."""
+HIDDEN = 0.5
+"""How much an edge that reaches beyond the picture box counts, beside one that stays inside it."""
 DOUBT = 4.0
 CONTRADICTION = 10.0
 """Disagreements (in combined uncertainties) that are reported, and beyond which the box is not used."""
 SQUARE_YAW = 8.0
 """Turned by less than this many degrees from the walls' directions counts as not turned."""
+
+_OUTWARD = np.array((-1.0, -1.0, 1.0, 1.0))
 
 
 @dataclass(frozen=True)
@@ -146,8 +150,10 @@ class _Problem:
             )
         except GeometryError:
             return np.full(9, np.nan)
-        edges = np.array((box.x_min, box.y_min, box.x_max, box.y_max)) - self.target
-        result: Floats = np.concatenate([edges / self.box_sigma, (x - self.prior) / self.prior_sigma]) * self.weights
+        edges = (np.array((box.x_min, box.y_min, box.x_max, box.y_max)) - self.target) / self.box_sigma
+        # What sticks out of the picture box may be hidden behind a wall or under a blanket; what the box shows is there.
+        edges = np.where(edges * _OUTWARD > 0, edges * HIDDEN, edges)
+        result: Floats = np.concatenate([edges, (x - self.prior) / self.prior_sigma]) * self.weights
         return result
 
     def solve(self) -> tuple[Floats, float]:

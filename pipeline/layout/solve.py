@@ -15,6 +15,7 @@ from ..artifacts.layout import Layout, ProxyLine, WallLine
 from ..geometry.placement import Rect, push_inside, separate, snap_to_wall
 from ..geometry.polygon import overlap_fraction
 from .placed import FLAT, may_share
+from .trim import trim
 
 SNAP = 0.07
 """A floor proxy nearer to a wall than this (or as deep in it) stands flush at it, metres."""
@@ -44,6 +45,7 @@ def solve(
         for b in range(a + 1, len(index))
         if may_share(proxies[index[a]], proxies[index[b]], tucked)
     ]
+    rects = trim(rects, fixed, allowed)
     weights = [
         confidence.get(proxies[i].id, 0.5) * max(0.05, r.width * r.depth) for i, r in zip(index, rects, strict=True)
     ]
@@ -129,4 +131,5 @@ def _rect(proxy: ProxyLine) -> Rect:
 
 def _at(proxy: ProxyLine, rect: Rect) -> ProxyLine:
     centre = (rect.x, rect.y, proxy.centre[2])
-    return proxy.model_copy(update={"centre": centre, "yaw": rect.yaw % 360.0})
+    size = (rect.width, rect.depth, proxy.size[2])
+    return proxy.model_copy(update={"centre": centre, "size": size, "yaw": rect.yaw % 360.0})

@@ -135,7 +135,7 @@ class Evaluation:
         tree = parse(text, self.limits)
         refuse(Checker(self.limits).run(tree))
         names = Binder(self._module).run(tree)
-        refuse(check_lines(tree, self._known, self._lines_allowed) + check_names(names, self._known, complete))
+        refuse(check_lines(tree, names, self._known, self._lines_allowed) + check_names(names, self._known, complete))
         for node, scope in names.uses:
             if scope.owner(node.id) is None and node.id not in self._known.own:
                 self._module.bind(node.id, node.lineno)

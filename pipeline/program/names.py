@@ -113,11 +113,12 @@ def circle(start: Definition, calls: dict[Definition, set[Definition]], done: se
     return []
 
 
-def check_lines(tree: ast.Module, known: Known, allowed: bool) -> list[ProgramError]:
+def check_lines(tree: ast.Module, names: Names, known: Known, allowed: bool) -> list[ProgramError]:
     """Problems with lines: each is a statement, outside functions; layout lines are top-level and literal.
 
     Args:
         tree: the program.
+        names: its scopes.
         known: the language's own names.
         allowed: whether the program may hold lines at all; object programs may not.
     """
@@ -135,8 +136,8 @@ def check_lines(tree: ast.Module, known: Known, allowed: bool) -> list[ProgramEr
             elif isinstance(node, (ast.If, ast.For)):
                 open_blocks += [(node.body, False), (node.orelse, False)]
     problems = []
-    for part in ast.walk(tree):
-        if isinstance(part, ast.Name) and part.id in known.lines and isinstance(part.ctx, ast.Load):
+    for part, _ in names.uses:
+        if part.id in known.lines:
             message: tuple[str, str] | None = (f"{part.id} is a line of the room", "An object program only has defs.")
             if allowed:
                 message = line_problem(part.id, statements.get(part), known)

@@ -9,6 +9,8 @@ from ..errors import ProgramError
 from .limits import Limits
 from .scan import Scanner, normal_text
 
+INNER = (ast.BinOp, ast.UnaryOp, ast.stmt, ast.expr, ast.comprehension, ast.arguments, ast.keyword, ast.excepthandler)
+"""Nodes that can hold others."""
 TOO_DEEP = "the program is nested too deeply"
 
 
@@ -45,8 +47,8 @@ def measure_depth(tree: ast.Module, limits: Limits) -> None:
         chained = isinstance(node, ast.If) and len(node.orelse) == 1 and isinstance(node.orelse[0], ast.If)
         for field in node._fields:
             value = getattr(node, field, None)
-            below = depth if chained and field == "orelse" else depth + 1
-            if isinstance(value, list):
-                open_nodes.extend((item, below, line) for item in value if isinstance(item, ast.AST))
-            elif isinstance(value, (ast.expr, ast.comprehension, ast.slice, ast.arguments)):
-                open_nodes.append((value, below, line))
+            if value.__class__ is list:
+                below = depth if chained and field == "orelse" else depth + 1
+                open_nodes += [(item, below, line) for item in value if isinstance(item, INNER)]
+            elif isinstance(value, INNER):
+                open_nodes.append((value, depth + 1, line))

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 
 Definition = ast.FunctionDef | ast.Lambda
 Comprehension = ast.ListComp | ast.DictComp | ast.GeneratorExp
+NAMELESS = (ast.expr_context, ast.operator, ast.unaryop, ast.boolop, ast.cmpop)
 
 
 @dataclass(eq=False)
@@ -149,7 +150,8 @@ class Binder:
                     if isinstance(target, ast.Name):
                         self.names.definitions.setdefault((scope, target.id), []).append(node.value)
             for child in ast.iter_child_nodes(node):
-                self.visit(child, scope)
+                if child.__class__ is not ast.Constant and not isinstance(child, NAMELESS):
+                    self.visit(child, scope)
 
     def conditional(self, node: ast.If, scope: Scope) -> None:
         """if and all its elifs, without going deeper for each."""

@@ -62,11 +62,11 @@ def _free_row(
     x: float, y: float, width: float, height: float, taken: list[tuple[float, float, float, float]], limit: int
 ) -> float:
     """The nearest y, in steps of a line, at which the label covers none that is there; the wish when there is none."""
-    step = height + 3
+    step = height + 6
     for offset in (0, 1, -1, 2, -2, 3, -3, 4, -4):
         at = y + offset * step
         if not 0 <= at <= limit - height:
             continue
-        if all(x > r + 3 or x + width < a - 3 or at > d + 1 or at + height < b - 1 for a, b, r, d in taken):
+        if all(x > r + 3 or x + width < a - 3 or at > d + 4 or at + height < b - 4 for a, b, r, d in taken):
             return at
     return min(max(y, 0), max(0, limit - height))

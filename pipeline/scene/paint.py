@@ -8,10 +8,10 @@ that depends only on where it faces, and Workbench draws it flat, with its cavit
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from typing import Any
 
+import bmesh
 import bpy
 import numpy as np
 
@@ -33,9 +33,9 @@ def painted_copy(obj: Any, made: list[Any], kerb: float | None = None) -> Any:
     made.extend([copy, mesh])
     matrix = world_matrix(obj)
     copy.matrix_basis = matrix
-    _paint(mesh, np.array(matrix, dtype=float)[:3, :3], math.inf if kerb is None else kerb)
     if kerb is not None:
         _cut(mesh, kerb)
+    _paint(mesh, np.array(matrix, dtype=float)[:3, :3])
     return copy
 
 
@@ -54,8 +54,8 @@ def glowing_material(objects: Iterable[Any]) -> Any:
     return material
 
 
-def _paint(mesh: Any, rotation: Any, kerb: float) -> None:
-    """Write the colour of each face to a new active colour attribute; what is cut away is painted like a top."""
+def _paint(mesh: Any, rotation: Any) -> None:
+    """Write the colour of each face to a new active colour attribute."""
     count = len(mesh.polygons)
     if not count:
         return
@@ -67,9 +67,6 @@ def _paint(mesh: Any, rotation: Any, kerb: float) -> None:
     palette = [m.diffuse_color[:3] if m is not None else _DEFAULT_COLOUR for m in mesh.materials] or [_DEFAULT_COLOUR]
     facing = normals.reshape(-1, 3) @ np.linalg.pinv(rotation)  # normals turn by the inverse transpose
     facing /= np.maximum(np.linalg.norm(facing, axis=1, keepdims=True), 1e-9)
-    centres = np.empty(3 * count, dtype=np.float32)
-    mesh.polygons.foreach_get("center", centres)
-    facing[centres[2::3] > kerb] = (0.0, 0.0, 1.0)
     colours = np.array(palette)[np.clip(slots, 0, len(palette) - 1)] * _shade(facing)[:, None]
     rgba = np.concatenate([colours, np.ones((count, 1))], axis=1).astype(np.float32)
     attribute = mesh.color_attributes.new(_SHADE, "FLOAT_COLOR", "CORNER")
@@ -84,9 +81,17 @@ def _shade(facing: Any) -> Any:
 
 
 def _cut(mesh: Any, height: float) -> None:
-    """Press everything above a height (in the mesh's own frame) down to it."""
-    points = np.empty(3 * len(mesh.vertices), dtype=np.float32)
-    mesh.vertices.foreach_get("co", points)
-    points[2::3] = np.minimum(points[2::3], height)
-    mesh.vertices.foreach_set("co", points)
-    mesh.update()
+    """Cut off everything above a height (in the mesh's own frame) and close the cut."""
+    work = bmesh.new()
+    work.from_mesh(mesh)
+    everything = [*work.verts, *work.edges, *work.faces]
+    cut = bmesh.ops.bisect_plane(
+        work, geom=everything, plane_co=(0.0, 0.0, height), plane_no=(0.0, 0.0, 1.0), clear_outer=True
+    )["geom_cut"]
+    rim = [item for item in cut if isinstance(item, bmesh.types.BMEdge)]
+    for face in bmesh.ops.holes_fill(work, edges=rim)["faces"] if rim else []:
+        face.normal_update()
+        if face.normal.z < 0:
+            face.normal_flip()
+    work.to_mesh(mesh)
+    work.free()

@@ -23,6 +23,7 @@ from .tags import FIELD, ID, KIND, PART, world_matrix
 
 BACKGROUND = (0.90, 0.905, 0.91)  # sRGB; a calm light grey
 _CYCLES_SAMPLES = 4
+_ON_WALL = 0.3  # metres between a wall and the middle of what hangs on it
 KERB = 0.12  # metres that stay of a wall that is cut down
 
 
@@ -40,8 +41,10 @@ def studio(objects: Iterable[Any], camera: CameraModel, long_side: int, fine: bo
         _resolution(scene, camera, long_side)
         scene.camera = _camera_object(camera, made)
         scene.collection.objects.link(scene.camera)
-        for obj in objects:
-            in_front = _stands_before(obj, camera)
+        shown = list(objects)
+        walls = [obj for obj in shown if obj.get(KIND) == "wall"]
+        for obj in shown:
+            in_front = _stands_before(obj, camera, walls)
             if not in_front or obj.get(KIND) in ("wall", "door"):
                 scene.collection.objects.link(painted_copy(obj, made, KERB if in_front else None))
         yield scene
@@ -129,9 +132,9 @@ def wall_inward(wall: Any) -> tuple[Any, Any] | None:
     return matrix[:3, 3], normal / max(float(np.linalg.norm(normal)), 1e-9)
 
 
-def _stands_before(obj: Any, camera: CameraModel) -> bool:
+def _stands_before(obj: Any, camera: CameraModel, walls: list[Any]) -> bool:
     """Whether an outer wall, or the wall that a fitting or a wall object belongs to, turns its back to the camera."""
-    face = wall_inward(_wall_of(obj))
+    face = wall_inward(_wall_of(obj, walls))
     if face is None:
         return False
     point, normal = face
@@ -140,14 +143,29 @@ def _stands_before(obj: Any, camera: CameraModel) -> bool:
     return bool(towards @ normal < -1e-3)
 
 
-def _wall_of(obj: Any) -> Any | None:
-    """The wall object that this is, or that this is in or hangs on."""
-    hangs = obj.get(KIND) != "proxy" or obj.get(FIELD + "placement") == "wall"
-    while obj is not None and hangs:
-        if obj.get(KIND) in ("wall", "partition"):
-            return obj
-        obj = obj.parent
-    return None
+def _wall_of(obj: Any, walls: list[Any]) -> Any | None:
+    """The wall object that this is, or that this is in or hangs on; None for what stands free."""
+    is_proxy = obj.get(KIND) == "proxy"
+    if is_proxy and obj.get(FIELD + "placement") != "wall":
+        return None
+    above = obj
+    while above is not None:
+        if above.get(KIND) in ("wall", "partition"):
+            return above
+        above = above.parent
+    return _nearest_wall(obj, walls) if is_proxy else None
+
+
+def _nearest_wall(obj: Any, walls: list[Any]) -> Any | None:
+    """The outer wall whose inner face is nearest to an object that hangs on a wall which it does not name."""
+    middle = np.array(world_matrix(obj), dtype=float)[:3, 3]
+
+    def distance(wall: Any) -> float:
+        face = wall_inward(wall)
+        return float("inf") if face is None else abs(float((middle - face[0]) @ face[1]))
+
+    near = min(walls, key=distance, default=None)
+    return near if near is not None and distance(near) < _ON_WALL else None
 
 
 def visible_objects(room: Any) -> list[Any]:

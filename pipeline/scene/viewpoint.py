@@ -14,7 +14,7 @@ from .tags import KIND, world_matrix
 
 _IMAGE_SIZE = (1280, 800)
 _FOV_Y = math.radians(32.0)
-_PITCH = math.radians(42.0)
+_PITCH = math.radians(46.0)
 _MARGIN = 1.06
 _DIRECTIONS = (-122.0, -58.0, 58.0, 122.0)  # degrees of the eye from the middle, a little off the diagonals
 

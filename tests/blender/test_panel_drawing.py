@@ -132,7 +132,9 @@ def test_with_a_picture_it_shows_name_and_size_and_says_that_no_model_is_used(pi
     assert bpy.ops.code_as_room.run_all.poll()
 
 
-def test_a_picture_that_is_none_is_refused_in_a_sentence_and_the_earlier_one_stays(picture: str, tmp_path: Path) -> None:
+def test_a_picture_that_is_none_is_refused_in_a_sentence_and_the_earlier_one_stays(
+    picture: str, tmp_path: Path
+) -> None:
     load(picture)
     wrong = tmp_path / "notes.png"
     wrong.write_text("not a picture")

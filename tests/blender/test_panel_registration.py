@@ -30,7 +30,15 @@ def ours() -> dict[str, Any]:
     """Everything of ours that Blender knows."""
     handlers = {
         name: [f.__module__ for f in getattr(bpy.app.handlers, name) if "code_as_room" in f.__module__]
-        for name in ("load_pre", "load_post", "undo_post", "redo_post", "save_pre", "save_post", "depsgraph_update_post")
+        for name in (
+            "load_pre",
+            "load_post",
+            "undo_post",
+            "redo_post",
+            "save_pre",
+            "save_post",
+            "depsgraph_update_post",
+        )
     }
     return {
         "types": sorted(name for name in dir(bpy.types) if name.startswith(("CODE_AS_ROOM", "CodeAsRoom"))),

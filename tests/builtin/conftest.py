@@ -12,11 +12,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from PIL import Image, ImageDraw, ImageFilter
-
 from code_as_room.pipeline.artifacts.replies import AnalysisReply
 from code_as_room.pipeline.models.base import Prompt
 from code_as_room.pipeline.models.builtin.client import BuiltinClient
+from PIL import Image, ImageDraw, ImageFilter
 
 Box = tuple[float, float, float, float]
 SCALE = 2  # painted twice as large and brought down, so that edges are smooth
@@ -165,7 +164,7 @@ class Painter:
         return Painted(small, floor, dict(self.boxes))
 
 
-def paint_bedroom(style: Style = Style(), seed: int = 1, long_side: int = 700) -> Painted:  # noqa: B008
+def paint_bedroom(style: Style = Style(), seed: int = 1, long_side: int = 700) -> Painted:
     """Bed on a rug between nightstands, wardrobe at the right wall, a turned armchair and a plant."""
     painter = Painter(4.2, 3.8, style, long_side, seed)
     down = 0.55 if style.notch else 0.0
@@ -181,7 +180,7 @@ def paint_bedroom(style: Style = Style(), seed: int = 1, long_side: int = 700) -
     return painter.finish()
 
 
-def paint_office(style: Style = Style(), seed: int = 1, long_side: int = 700) -> Painted:  # noqa: B008
+def paint_office(style: Style = Style(), seed: int = 1, long_side: int = 700) -> Painted:
     """A desk with a chair and a laptop, a sofa, shelves, a round table."""
     painter = Painter(4.6, 3.4, style, long_side, seed)
     painter.thing("desk", -0.9, -1.33, 1.5, 0.7, (225, 205, 175), 0.28)

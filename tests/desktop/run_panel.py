@@ -13,6 +13,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import shlex
 import shutil
 import subprocess
 import sys
@@ -52,9 +53,25 @@ def run(blender: str, picture: Path, shots: Path) -> int:
         environment = {**os.environ, "BLENDER_USER_RESOURCES": folder, "CODE_AS_ROOM_SHOTS": str(shots)}
         environment["CODE_AS_ROOM_PICTURE"] = str(picture)
         inside = str(Path(__file__).with_name("inside_blender.py"))
-        command = [blender, "--window-geometry", "0", "0", "1600", "1000", "--python-exit-code", "3", "--python", inside]
+        # The program may be a wrapper with arguments of its own.
+        program = [blender] if Path(blender).is_file() else shlex.split(blender)
+        command = [
+            *program,
+            "--window-geometry",
+            "0",
+            "0",
+            "1600",
+            "1000",
+            "--python-exit-code",
+            "3",
+            "--python",
+            inside,
+        ]
         try:
             done = subprocess.run(command, env=environment, timeout=TIME_OUT, check=False)
+        except FileNotFoundError:
+            print(f"There is no program {blender!r}. Name Blender with --blender.", file=sys.stderr)
+            return 2
         except subprocess.TimeoutExpired:
             print(f"Blender did not end within {TIME_OUT} s.", file=sys.stderr)
             return 1

@@ -179,8 +179,12 @@ def test_orthographic_views_with_and_without_wall_tops(truth: Truth, seed: int, 
 
 
 @fits
-@given(truths(right_angled(), kind="orthographic", tilt=15))
-def test_a_tilted_orthographic_view_shows_in_the_wall_tops(truth: Truth) -> None:
+@given(truths(right_angled(), kind="orthographic", tilt=15), seeds)
+def test_a_tilted_orthographic_view_shows_in_the_wall_tops(truth: Truth, seed: int) -> None:
+    low, high = truth.shaken(3, seed)
+    shaken = fit_camera(truth.camera.image_size, low, truth.width, high, truth.height, kind="orthographic")
+    assert not any("exchanged" in f.message for f in shaken.findings), "noise does not turn the room inside out"
+    assert worst_footprint(truth, shaken, seed) < 0.05
     fit = fit_camera(truth.camera.image_size, named(truth.low), truth.width, named(truth.high), truth.height)
     assert fit.camera.kind == "orthographic" and fit.error_px < 0.5
     assert np.array(fit.floor) == pytest.approx(truth.floor, abs=0.03)

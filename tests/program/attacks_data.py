@@ -204,6 +204,13 @@ HUGE = {
     "dict_of_strings": "x = {}\nfor i in range(1000000):\n    x[f'{i}'] = 'a' * 1000",
     "text_literal": "x = '" + "a" * 20000 + "'",
     "program_text": "x = 1\n" * 60000,
+    "program_of_many_lines": "x = -1\n" * 37000 + "y = z",
+    "program_of_one_list": "x = [" + "-1," * 87000 + "]\ny = z",
+    "program_of_many_problems": "x.y\n" * 65000,
+    "program_of_many_names": "".join(f"n{i} = m{i}\n" for i in range(15000)),
+    "program_of_brackets": "x = [" + "[[]]," * 50000 + "]\ny = z",
+    "program_of_comments": "#" * 262000 + "\ny = z",
+    "program_of_one_text": "'" * 262000,
     "program_of_lists": "x = [" + "1," * 200000 + "]",
     "strings_in_list": "x = [('b' + 'a' * 9990) + str(i) for i in range(90000)]",
     "strings_measured": "x = str([('a' * 10000)] * 100000)",
@@ -340,7 +347,10 @@ LOOPS = {
     "recursion_by_sorted": "d = [0]\ndef f(n):\n    return sorted([1], key=d[0])\nd[0] = f\nx = f(1)",
     "recursion_by_key": "def f(g):\n    return min([g, g], key=g)\nx = f(f)",
     "calls_exponential": "def a(x):\n    return x\n"
-    + "".join(f"def {n}(x):\n    return {p}({p}(x)) + {p}({p}(x))\n" for p, n in zip("abcdefghijkl", "bcdefghijklm"))
+    + "".join(
+        f"def {n}(x):\n    return {p}({p}(x)) + {p}({p}(x))\n"
+        for p, n in zip("abcdefghijkl", "bcdefghijklm", strict=False)
+    )
     + "x = m(1)",
     "calls_deep": "def f0(x):\n    return x\n"
     + "".join(f"def f{i}(x):\n    return f{i - 1}(x)\n" for i in range(1, 200))
@@ -442,7 +452,41 @@ FAILING = {
     "zip_strict": "x = list(zip([1], [1, 2], strict=True))",
 }
 
+VERTICES = {
+    "array": "x = box((1, 1, 1))\nfor i in range(20):\n    x = array(x, 100, (1, 0, 0))",
+    "array_huge": "x = array(box((1, 1, 1)), 10 ** 9, (1, 0, 0))",
+    "join_doubling": "x = box((1, 1, 1))\nfor i in range(60):\n    x = join([x, x])",
+    "mirror_doubling": "x = [box((1, 1, 1))]\nfor i in range(60):\n    x = x + [mirror(y) for y in x]",
+    "segments": "x = cylinder(1, 1, segments=10 ** 9)",
+    "segments_loop": "x = [sphere(1, segments=200, rings=200) for i in range(100000)]",
+    "rings": "x = sphere(1, rings=10 ** 12)",
+    "torus": "x = [torus(1, 0.1, segments=200) for i in range(100000)]",
+    "boxes": "x = [box((1, 1, 1)) for i in range(1000000)]",
+    "rounded": "x = [rounded_box((1, 1, 1), 0.1, segments=16) for i in range(100000)]",
+    "grid": "x = grid(lambda u, v: 0, 10 ** 6, 10 ** 6)",
+    "grid_slow": "x = grid(lambda u, v: sum(range(100000)), 300, 300)",
+    "grid_loop": "for i in range(100000):\n    x = grid(lambda u, v: 0, 100, 100)",
+    "lathe": "p = [(1, i * 0.001) for i in range(400)]\nx = [lathe(p, 200) for i in range(100000)]",
+    "sweep": "p = [(sin(i), cos(i), i * 0.01) for i in range(9000)]\nx = [tube(p, 0.1) for i in range(100000)]",
+    "move_loop": "x = sphere(1, segments=100, rings=100)\nfor i in range(1000000):\n    x = move(x, (0, 0, 1))",
+    "move_shared": "x = [sphere(1)] * 100000\ny = move(x, (0, 0, 1))",
+    "mesh": "x = mesh([(0, 0, 0)] * 100000, [(0, 1, 2)] * 100000)\ny = [move(x, (0, 0, 1)) for i in range(100000)]",
+    "mesh_faces": "x = [mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)] * 90000) for i in range(100000)]",
+    "mesh_indices": "x = mesh([(0, 0, 0)], [(0, 10 ** 9, -1)])",
+    "mesh_text": "x = mesh('abc', 'def')",
+    "mesh_cycle": "a = []\nappend(a, a)\nx = mesh(a, a)",
+    "part_loop": "x = box((1, 1, 1))\nfor i in range(1000000):\n    x = part('a', x)",
+    "bounds_loop": "x = [sphere(1)] * 10000\nfor i in range(1000000):\n    y = bounds(x)",
+    "size_zero": "x = box((0, 0, 0))",
+    "size_huge": "x = box((1e300, 1, 1))",
+    "extrude": "p = [(sin(i * 0.001), cos(i * 0.001)) for i in range(6000)]\nx = [extrude(p, 1) for i in range(100000)]",
+    "wrong_value": "x = move(3, (0, 0, 1))",
+    "function_as_shape": "furnish('bed_1', sin)",
+    "text_as_shape": "furnish('bed_1', 'box')",
+}
+
 GROUPS = {
+    "vertices": VERTICES,
     "outside": OUTSIDE,
     "formats": FORMATS,
     "huge": HUGE,

@@ -47,7 +47,8 @@ def _grid(box: OrientedBox) -> NDArray[np.float64]:
     steps = (np.arange(7) + 0.5) / 7
     a, b, _, d = box.corners()
     points = a + (b - a) * steps[:, None, None] + (d - a) * steps[None, :, None]
-    return points.reshape(-1, 2)
+    result: NDArray[np.float64] = points.reshape(-1, 2)
+    return result
 
 
 def _shares(things: list[Thing]) -> NDArray[np.float64]:
@@ -107,14 +108,15 @@ def _is_rug(j: int, things: list[Thing], shares: NDArray[np.float64], frame: Fra
     if hidden > 0.12 and outer.fill < 0.88 and outer.fill + hidden > 0.7:
         return True
     short = min(outer.box.length, outer.box.breadth) * frame.scale
-    beside = [c for c in contacts(frame, frame.footprint(outer.box, 0.0)) if c.gap < 0.1]
-    if not beside and area > 1.9 and short > 1.15:
+    near = contacts(frame, frame.footprint(outer.box, 0.0))
+    over = any(0.08 < shares[j, i] < 0.8 and outer.fill > other.fill for i, other in enumerate(things) if i != j)
+    if not over and all(c.gap > 0.4 for c in near) and area > 1.9 and short > 1.15:
         return True  # too large for a table, and beds stand at walls
     on_top = [i for i in range(len(things)) if i != j and shares[i, j] > 0.8 and things[i].box.area * square > 0.14
               and min(things[i].box.length, things[i].box.breadth) * frame.scale > 0.28]
     if area < 1.2 or not on_top:
         return False
-    if beside:
+    if any(c.gap < 0.1 for c in near):
         return False
     offsets = [np.array(things[i].box.centre) - np.array(outer.box.centre) for i in on_top]
     long = max(outer.box.length, outer.box.breadth)

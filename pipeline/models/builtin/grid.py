@@ -61,7 +61,8 @@ def box_mean(values: Floats, radius: int, mask: Bools | None = None) -> Floats:
     weight = np.ones(values.shape[:2], np.float32) if mask is None else mask.astype(np.float32)
     total = box_sum(values * (weight[..., None] if values.ndim == 3 else weight), radius)
     count = np.maximum(box_sum(weight, radius), 1e-6)
-    return (total / (count[..., None] if values.ndim == 3 else count)).astype(np.float32)
+    mean: Floats = (total / (count[..., None] if values.ndim == 3 else count)).astype(np.float32)
+    return mean
 
 
 def dilate(mask: Bools, radius: int) -> Bools:

@@ -112,7 +112,8 @@ def _gain(board: _Board, key: int, other: int) -> float:
     full = min(1.0, (solid[0] * a.box.area + solid[1] * b.box.area) / max(union.box.area, 1.0))
     if min(full, union.fill + 0.3) < 0.8:
         return 0.0
-    better = full - max(solid[0] if large is a else solid[1], 0.5 * (solid[0] + solid[1]))
+    before = max(solid) if small.size > 0.25 * large.size else solid[0] if large is a else solid[1]
+    better = full - max(before, 0.5 * (solid[0] + solid[1]))
     return full + 0.2 * better if better > -0.06 else 0.0
 
 

@@ -110,11 +110,13 @@ def inward(values: Floats, polygon: Polygon, index: int, depth: int) -> Floats:
         low, high = sorted((round(x0), round(x1)))
         rows = round(y0) + np.arange(depth) if x1 > x0 else round(y0) - 1 - np.arange(depth)
         rows = rows[(rows >= 0) & (rows < height)]
-        return values[rows][:, max(low, 0) : min(high, width)]
+        across: Floats = values[rows][:, max(low, 0) : min(high, width)]
+        return across
     low, high = sorted((round(y0), round(y1)))
     columns = round(x0) - 1 - np.arange(depth) if y1 > y0 else round(x0) + np.arange(depth)
     columns = columns[(columns >= 0) & (columns < width)]
-    return values[max(low, 0) : min(high, height)][:, columns].transpose(1, 0, 2)
+    strip: Floats = values[max(low, 0) : min(high, height)][:, columns].transpose(1, 0, 2)
+    return strip
 
 
 def _ring_depth(lab: Floats, polygon: Polygon, index: int, limit: int) -> float:

@@ -63,7 +63,7 @@ def merge_areas(lab: Floats, threshold: float = 3.5, start: Ints | None = None, 
     size = np.bincount(labels.reshape(-1), minlength=count).astype(np.float64)
     mean = np.stack([np.bincount(labels.reshape(-1), flat[:, c], count) for c in range(3)], 1) / size[:, None]
     a, b, length = neighbours(labels)
-    total = labels.reshape(-1)
+    total: Ints = labels.reshape(-1)
     for step in range(60):
         if not len(a):
             break
@@ -81,7 +81,7 @@ def merge_areas(lab: Floats, threshold: float = 3.5, start: Ints | None = None, 
             continue
         group = union(count, a[join], b[join])
         count = int(group.max()) + 1
-        merged = np.bincount(group, size, count)
+        merged: NDArray[np.float64] = np.bincount(group, size, count).astype(np.float64)
         mean = np.stack([np.bincount(group, mean[:, c] * size, count) for c in range(3)], 1) / merged[:, None]
         size, total = merged, group[total]
         a, b = group[a], group[b]
