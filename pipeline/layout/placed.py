@@ -13,7 +13,7 @@ FLAT = 0.06
 """Things lower than this (rugs, mats) may lie under others, metres."""
 TOUCH = 0.01
 """Heights that share less than this do not count as sharing, metres."""
-TUCKED = frozenset({"belongs_to", "has", "under", "over"})
+TUCKED = frozenset({"under", "over"})
 
 
 def placed(proxy: ProxyLine) -> Placed:
@@ -33,7 +33,7 @@ def may_share(a: ProxyLine, b: ProxyLine, tucked: frozenset[frozenset[str]]) -> 
 
 
 def tucked_pairs(edges: Iterable[GraphEdge], proxies: Sequence[ProxyLine]) -> frozenset[frozenset[str]]:
-    """Pairs that the model says belong together, the lower of which may stand partly under the higher (chair, desk)."""
+    """Pairs of which the model says that one stands partly under the other (a chair pushed under its desk)."""
     heights = {p.id: p.size[2] for p in proxies}
     return frozenset(
         frozenset((e.source, e.target))

@@ -145,7 +145,7 @@ def see(picture: WorkPicture, known_width: float | None = None,
         light = float(np.median(lab[ring][:, 0])) if ring.any() else 80.0
         things, openings = _split_walls(things, frame, inside, light)
     elif outline.found:
-        openings = ring_gaps(lab, outline, frame)
+        openings = ring_gaps(lab, picture.ink, outline, frame)
     things = _plausible(things, frame, areas.floor_colour)
     nest(things, frame)
     doors = [o.along[1] - o.along[0] for o in openings if o.kind == "door"]

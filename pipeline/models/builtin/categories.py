@@ -70,7 +70,7 @@ class Looks:
     Attributes:
         colour: mean Lab; roundness: hull over rectangle; wall_gap: metres to the nearest wall.
         near_bed: metres to the nearest bed's side, or None; near_table: to a desk or table.
-        loaded: something lies on it; seat: a chair stands at it; backed: only a long side is at a wall.
+        loaded: something lies on it; seat: a chair stands at it; height: as measured, or None; backed: only a long side is at a wall.
     """
 
     colour: Floats
@@ -81,6 +81,7 @@ class Looks:
     loaded: bool = False
     seat: bool = False
     backed: bool = False
+    height: float | None = None
 
 
 def is_green(colour: Floats) -> bool:
@@ -105,6 +106,8 @@ def _score(kind: Kind, foot: Footprint, looks: Looks) -> float:
         value += 2.5 if looks.near_bed is not None and looks.near_bed < 0.35 else -1.0
     if kind.category in ("chair", "stool"):
         value += 1.2 if looks.near_table is not None and looks.near_table < 0.45 else -0.6
+    if looks.height is not None:
+        value -= 0.5 * (np.log(kind.height / looks.height) / 0.35) ** 2
     if kind.height > 1.2 and looks.loaded:
         value -= 1.5
     if kind.category in ("desk", "dining_table", "table") and looks.seat:

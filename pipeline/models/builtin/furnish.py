@@ -157,7 +157,8 @@ def furnish(things: list[Thing], frame: Frame) -> list[Item]:
 def _standing(thing: Thing, frame: Frame, known: list[Item], loaded: bool) -> Item:
     if thing.flat:
         return Item(thing, RUG.category, frame.footprint(thing.box, RUG.height), RUG.height, 0.6)
-    feet = {height: frame.footprint(thing.box, height) for height in heights()}
+    measured = frame.leaning_height(thing.box)
+    feet = {height: frame.footprint(thing.box, measured or height) for height in heights()}
     flat = feet[min(feet)]
     near = contacts(frame, flat)
     looks = Looks(
@@ -167,10 +168,12 @@ def _standing(thing: Thing, frame: Frame, known: list[Item], loaded: bool) -> It
         loaded,
         any(k.category in SEATS and _gap(flat, k.foot) < 0.35 for k in known),
         _backed(flat, near),
+        measured,
     )
     kind, confidence = guess(feet, looks)
-    foot = feet.get(kind.height, frame.footprint(thing.box, kind.height))
-    return Item(thing, kind.category, foot, kind.height, round(confidence * min(1.0, thing.fill + 0.2), 2))
+    height = measured or kind.height
+    foot = frame.footprint(thing.box, height)
+    return Item(thing, kind.category, foot, height, round(confidence * min(1.0, thing.fill + 0.2), 2))
 
 
 def _backed(foot: Footprint, near: list[WallContact]) -> bool:

@@ -52,10 +52,14 @@ def _runs(flags: NDArray[np.bool_], bridge: int) -> list[tuple[int, int]]:
     return [(a, b + 1) for a, b in runs]
 
 
-def ring_gaps(lab: Floats, outline: Outline, frame: Frame) -> list[Opening]:
+def ring_gaps(lab: Floats, ink: Floats, outline: Outline, frame: Frame) -> list[Opening]:
     """Doors and windows of an orthographic view or a plan: where the wall ring is not the wall's colour.
 
-    A gap that is light and greyish, like glass and sills, is a window; any other is a door while it is narrow enough.
+    A gap that is light and greyish, like glass and sills, or has a line drawn along it, is a window; any other is a
+    door.
+
+    Args:
+        ink: `WorkPicture.ink`.
     """
     found = []
     count = len(outline.outer)
@@ -84,7 +88,9 @@ def ring_gaps(lab: Floats, outline: Outline, frame: Frame) -> list[Opening]:
             chroma = float(np.median(np.hypot(patch[:, 1], patch[:, 2])))
             outside = outline.surround is not None and float(
                 np.linalg.norm(np.median(patch, axis=0) - outline.surround)) < 4
-            window = light > 62 and chroma < 14 and (width > 1.15 or not outside)
+            drawn = inward(ink[..., None], outline.outer, edge, thickness)[:, low + 1 : high - 1, 0] < 65
+            lined = drawn.size > 0 and bool((drawn.mean(1) > 0.8).any())
+            window = light > 62 and chroma < 14 and (lined or width > 1.15 or not outside)
             found.append(_gap(outline, frame, edge, (low, high), window))
     return found
 

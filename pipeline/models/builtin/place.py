@@ -68,6 +68,23 @@ class Frame:
         camera = self.height / (1.0 - self.shrink)
         return camera / max(camera - height, 0.1 * camera)
 
+    def leaning_height(self, box: OrientedBox) -> float | None:
+        """Height of something that reaches over the foot of a wall in the picture, metres; None when it does not.
+
+        What stands in the room cannot stand beyond its walls, so its top must be this high at least; furniture at a
+        wall is this high.
+        """
+        if self.shrink >= 0.999:
+            return None
+        x0, y0, x1, y1 = box.bounds()
+        low, high = self.floor.min(0), self.floor.max(0)
+        px, py = self.vanishing
+        ratios = [(px - x0) / max(px - low[0], 1e-6), (x1 - px) / max(high[0] - px, 1e-6),
+                  (py - y0) / max(py - low[1], 1e-6), (y1 - py) / max(high[1] - py, 1e-6)]
+        camera = self.height / (1.0 - self.shrink)
+        height = camera * (1 - 1 / max(max(ratios), 1.0))
+        return float(min(height, self.height)) if height > 0.25 else None
+
     def metres(self, x: float, y: float) -> tuple[float, float]:
         """A pixel at floor level in metres."""
         cx, cy = self.centre
