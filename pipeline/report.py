@@ -74,7 +74,8 @@ def answered_by(memory: Memory, describes: str = "") -> str:
         return describes
     said = []
     for client in clients:
-        models = {e.meta.model for e in memory.entries if e.type == "Answer" and e.meta.client == client} - {""}
+        models = {e.meta.model for e in memory.entries if e.type == "Answer" and e.meta.client == client}
+        models -= {"", client}
         said.append(f"{_client_words(client)} ({', '.join(sorted(models))})" if models else _client_words(client))
     return "; ".join(said) or describes or "nothing has answered yet"
 

@@ -156,7 +156,7 @@ def test_says_what_answered() -> None:
     )
     mixed.keep_answer("s03_layout", "03_critique/0", "{}", meta)
     text = Page(make_report(mixed, {}, (), "big-1 at example.com")).text
-    assert "the built-in picture analysis, no model (builtin); openai:big-1 (big-1)" in text
+    assert "the built-in picture analysis, no model; openai:big-1 (big-1)" in text
     assert "$0.2500" in text and "0.2500 US dollars" in text
 
 
