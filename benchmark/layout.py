@@ -39,7 +39,9 @@ def figures(truth: Room, result: Room) -> dict[str, Any]:
         "iou_majors": sum(ious) / len(ious),
         "facing_within_15": sum(a <= 15 for a in turned) / len(turned) if turned else 1.0,
         "worst_major_overlap": _worst_overlap(result),
-        "worst_major_outside": max((outside_fraction(t.footprint, result.floor) for t in _standing(result)), default=0.0),
+        "worst_major_outside": max(
+            (outside_fraction(t.footprint, result.floor) for t in _standing(result)), default=0.0
+        ),
         "objects": len(result.things),
         "missed": [t.id for t in truth.things if t.id not in matched],
         "iou_by_major": {t.id: round(i, 3) for t, i in zip(majors, ious, strict=True)},

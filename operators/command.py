@@ -30,7 +30,9 @@ def parser(program: str) -> argparse.ArgumentParser:
     result.add_argument("picture", type=Path, help="PNG, JPEG, WebP or TIFF picture of a room seen from above")
     result.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for the results")
     result.add_argument("--width", type=float, metavar="M", help="the room's inner width in metres, when you know it")
-    result.add_argument("--wall-height", type=float, metavar="M", help="height of the walls in metres, when you know it")
+    result.add_argument(
+        "--wall-height", type=float, metavar="M", help="height of the walls in metres, when you know it"
+    )
     result.add_argument("--notes", default="", help="a hint for the model, such as 'the bed is 1.4 m wide'")
     result.add_argument("--iterations", type=int, default=5, metavar="N", help="most rounds of the layout loop (0-5)")
     result.add_argument("--resume", action="store_true", help="go on from DIR/memory.json; finished stages are kept")
@@ -123,7 +125,9 @@ def prepare_folder(folder: Path) -> Path:
             pass
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise OutputError(f"Nothing can be written in {folder}: {reason}.", "Choose another folder with --out.") from error
+        raise OutputError(
+            f"Nothing can be written in {folder}: {reason}.", "Choose another folder with --out."
+        ) from error
     return folder
 
 

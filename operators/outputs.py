@@ -49,7 +49,9 @@ def write_outputs(run: Run, folder: Path) -> list[Path]:
         write_memory(run.memory, folder),
         write_file(folder / "top.png", top),
         write_file(folder / "view.png", view),
-        write_file(folder / "report.html", make_report(run.memory, pictures, run.reports, run.client.describes).encode()),
+        write_file(
+            folder / "report.html", make_report(run.memory, pictures, run.reports, run.client.describes).encode()
+        ),
     ]
 
 

@@ -209,9 +209,7 @@ def _recalled(request: Request, prompt: Prompt, recall: Recall | None) -> AskRes
     )
 
 
-def _answer(
-    request: Request, prompt: Prompt, client: ModelClient, cancel: threading.Event, put: OnEvent
-) -> AskResult:
+def _answer(request: Request, prompt: Prompt, client: ModelClient, cancel: threading.Event, put: OnEvent) -> AskResult:
     """Ask, validate, and on an unusable answer ask once more with the problems quoted back."""
     started = time.monotonic()
     said: list[tuple[Prompt, Reply]] = []

@@ -91,9 +91,7 @@ class ReferencePicture:
             raise PictureError("The part of the picture that was asked for lies outside it.")
         return encode_for_model(_shrunk(self._image.crop(corners), long_side))
 
-    def with_boxes_drawn(
-        self, boxes: Sequence[tuple[str, ImageBox]], long_side: int = MODEL_LONG_SIDE
-    ) -> bytes:
+    def with_boxes_drawn(self, boxes: Sequence[tuple[str, ImageBox]], long_side: int = MODEL_LONG_SIDE) -> bytes:
         """The picture with thin boxes, each with its label (a number or a short id), drawn at the size sent.
 
         Args:

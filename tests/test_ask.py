@@ -61,7 +61,9 @@ def request(key, what="beds", **extra):
 
 
 def run(client, *keys, cancel=None, **callbacks):
-    return perform_ask(Ask(tuple(request(key) for key in keys)), "s01", client, cancel or threading.Event(), **callbacks)
+    return perform_ask(
+        Ask(tuple(request(key) for key in keys)), "s01", client, cancel or threading.Event(), **callbacks
+    )
 
 
 def test_a_good_answer_comes_back_validated_with_what_it_took():
@@ -205,7 +207,12 @@ def test_events_and_keep_come_on_the_calling_thread():
         threads.add(threading.current_thread())
         kinds.append(event.kind)
 
-    run(Oracle(lambda prompt, cancel: GOOD), "a", on_event=note, keep=lambda result: threads.add(threading.current_thread()))
+    run(
+        Oracle(lambda prompt, cancel: GOOD),
+        "a",
+        on_event=note,
+        keep=lambda result: threads.add(threading.current_thread()),
+    )
     assert threads == {threading.current_thread()}
     assert kinds == ["asked", "progress", "answered"]
 

@@ -79,7 +79,9 @@ FILES = {
     "turned 90": lambda: upside_down(halves(), 6),
     "turned 270": lambda: upside_down(halves(), 8),
     "animated": lambda: encoded(halves(), "GIF", save_all=True, append_images=[Image.new("RGB", (160, 100))] * 3),
-    "animated webp": lambda: encoded(halves(), "WEBP", save_all=True, append_images=[Image.new("RGB", (160, 100))] * 3, quality=95),
+    "animated webp": lambda: encoded(
+        halves(), "WEBP", save_all=True, append_images=[Image.new("RGB", (160, 100))] * 3, quality=95
+    ),
     "interlaced 16 bit rgb": lambda: png_16_bit_rgb(halves()),
     "broken profile": lambda: encoded(halves(), "PNG", icc_profile=b"nonsense" * 40),
 }
@@ -148,7 +150,9 @@ def test_numbers_that_are_none_become_black():
 
 
 def test_bilevel_pictures_are_read():
-    pixels = read_picture(encoded(halves().convert("L").point(lambda v: 255 * (v > 200)).convert("1"), "PNG"), "x").pixels()
+    pixels = read_picture(
+        encoded(halves().convert("L").point(lambda v: 255 * (v > 200)).convert("1"), "PNG"), "x"
+    ).pixels()
     assert pixels[5, 5].tolist() == [255, 255, 255] and pixels[80, 80].tolist() == [0, 0, 0]
 
 
@@ -252,7 +256,15 @@ def test_what_is_no_usable_picture_is_told_in_one_plain_sentence(kind):
 
 def test_missing_files_folders_and_odd_paths_are_told(tmp_path):
     os.mkfifo(tmp_path / "pipe") if hasattr(os, "mkfifo") else (tmp_path / "pipe").mkdir()
-    for path in (tmp_path / "no.png", tmp_path, tmp_path / "pipe", tmp_path / "no" / "no.png", "", "a\x00b", "x" * 5000):
+    for path in (
+        tmp_path / "no.png",
+        tmp_path,
+        tmp_path / "pipe",
+        tmp_path / "no" / "no.png",
+        "",
+        "a\x00b",
+        "x" * 5000,
+    ):
         with pytest.raises(PictureError):
             load_picture(path)
 

@@ -54,7 +54,9 @@ def test_boxes_are_drawn_thin_at_their_places_with_labels():
     pixels = np.asarray(opened(picture.with_boxes_drawn([("12", box)]))).astype(int)
     changed = np.abs(pixels - 128).max(axis=2) > 20
     ys, xs = np.nonzero(changed)
-    assert abs(xs.min() - 200) <= 3 and abs(xs.max() - 600) <= 3 and abs(ys.min() - 150) <= 3 and abs(ys.max() - 450) <= 3
+    assert (
+        abs(xs.min() - 200) <= 3 and abs(xs.max() - 600) <= 3 and abs(ys.min() - 150) <= 3 and abs(ys.max() - 450) <= 3
+    )
     assert not changed[200:400, 300:500].any()
     assert changed[150:200, 200:260].sum() > 150
     assert np.array_equal(picture.pixels(), np.full((600, 800, 3), 128))

@@ -9,7 +9,10 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
-PRODUCT = [ROOT / "__init__.py", *(p for d in ("operators", "panels", "pipeline") for p in sorted((ROOT / d).rglob("*.py")))]
+PRODUCT = [
+    ROOT / "__init__.py",
+    *(p for d in ("operators", "panels", "pipeline") for p in sorted((ROOT / d).rglob("*.py"))),
+]
 BLENDER = {"bpy", "bmesh", "gpu", "mathutils", "bpy_extras", "gpu_extras", "addon_utils", "blf", "bl_ui"}
 RUNTIME = {"requests", "urllib3", "PIL", "numpy", "pydantic", "pydantic_core"}
 # A file may import its own layer and lower ones. Files beside the folders count by the first word of their name.
@@ -86,4 +89,6 @@ def test_no_path_of_a_machine_and_no_absolute_import_of_the_add_on() -> None:
     for path in PRODUCT:
         text = path.read_text(encoding="utf-8")
         assert "sys.path" not in text, path
-        assert not [n for level, n in imports(path) if level == 0 and n.split(".")[0] in ("code_as_room", "bl_ext")], path
+        assert not [n for level, n in imports(path) if level == 0 and n.split(".")[0] in ("code_as_room", "bl_ext")], (
+            path
+        )

@@ -11,6 +11,7 @@ from ..artifacts.common import Metres2
 from ..geometry.camera import GeometryError, Kind
 from ..geometry.fit import CameraFit, fit_camera
 from ..geometry.footprint import image_box_of
+from ..layout.walls import NAMES
 
 ASPECT_LIMIT = 0.08
 
@@ -110,7 +111,9 @@ def _scaled_object(item: DetectedObject, scale: tuple[float, float]) -> Detected
     width, depth, tall = item.size[0] * own[0], item.size[1] * own[1], item.size[2] * mean
     base = (item.centre[2] - item.size[2] / 2) * mean
     centre = (item.centre[0] * scale[0], item.centre[1] * scale[1], base + tall / 2)
-    return item.model_copy(update={"centre": centre, "size": (width, depth, tall)})
+    # From here on the outer walls have ids of their own.
+    parent = NAMES.get(item.parent or "", item.parent)
+    return item.model_copy(update={"centre": centre, "size": (width, depth, tall), "parent": parent})
 
 
 def _scaled_architecture(item: ArchitectureItem, scale: tuple[float, float]) -> ArchitectureItem:

@@ -147,6 +147,7 @@ class LayoutEdit(Artifact):
     placement: Placement | None = None
     parent: str | None = None
     salience: Salience | None = None
+    shape: Shape | None = None
     new_id: str | None = None
     reason: str = ""
     origin: Literal["model", "solver", "artist"] = "model"

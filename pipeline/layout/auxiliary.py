@@ -131,7 +131,8 @@ def _vertical(z_min: float, z_max: float, low: float, height: float, ceiling: fl
 
 def nearest_wall(item: DetectedObject, walls: Sequence[WallLine]) -> WallLine | None:
     """The wall a thing hangs on: the named one, or else the nearest whose span holds it."""
-    named = [w for w in walls if item.parent and (w.id == item.parent or w.id.split("_2")[0] == NAMES.get(item.parent))]
+    name = NAMES.get(item.parent or "", item.parent)
+    named = [w for w in walls if name and (w.id == name or w.id.rpartition("_")[0] == name)]
     best: tuple[float, WallLine] | None = None
     for wall in named or walls:
         length = math.dist(wall.start, wall.end)

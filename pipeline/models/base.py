@@ -60,9 +60,7 @@ class ModelClient(Protocol):
     name: str
     describes: str
 
-    def answer(
-        self, prompt: Prompt, cancel: threading.Event, progress: Callable[[str], None] | None = None
-    ) -> Reply:
+    def answer(self, prompt: Prompt, cancel: threading.Event, progress: Callable[[str], None] | None = None) -> Reply:
         """Answer one prompt.
 
         Args:

@@ -245,6 +245,9 @@ def _network_fault(error: Exception, leash: Leash, limits: Limits, host: str) ->
         return _fault("The base URL is not a valid address.", "Check the base URL.", "request")
     if isinstance(error, (requests.exceptions.RequestException, urllib3.exceptions.HTTPError, OSError)):
         return _fault(
-            f"The connection to {host} broke off.", "Check the internet connection and try again.", "network", retry=True
+            f"The connection to {host} broke off.",
+            "Check the internet connection and try again.",
+            "network",
+            retry=True,
         )
     return _fault(f"The exchange with {host} failed ({type(error).__name__}).", "Try again.", "network")

@@ -13,7 +13,19 @@ from typing import Any, Literal
 from ..errors import ModelError
 
 FaultKind = Literal[
-    "network", "timeout", "tls", "proxy", "redirect", "size", "key", "model", "money", "rate", "server", "request", "shape"
+    "network",
+    "timeout",
+    "tls",
+    "proxy",
+    "redirect",
+    "size",
+    "key",
+    "model",
+    "money",
+    "rate",
+    "server",
+    "request",
+    "shape",
 ]
 RETRIED_STATUSES = frozenset({408, 429, 500, 502, 503, 504, 529})
 _LONGEST_SENTENCE = 400

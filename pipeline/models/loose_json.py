@@ -9,7 +9,7 @@ from typing import Any
 _SPACE = re.compile(r"(?:\s+|//[^\n]*|/\*.*?\*/)*", re.DOTALL)
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
 _WORD = re.compile(r"[+-]?[A-Za-z_$][A-Za-z0-9_$]*")
-_PLAIN = {quote: re.compile(rf"[^{quote}\\]*") for quote in ("\"", "'", "\u201c\u201d\"")}
+_PLAIN = {quote: re.compile(rf"[^{quote}\\]*") for quote in ('"', "'", '\u201c\u201d"')}
 _ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "b": "\b", "f": "\f"}
 _HEX4 = re.compile(r"[0-9A-Fa-f]{4}")
 _CONSTANTS: dict[str, Any] = {
@@ -136,7 +136,7 @@ class LooseParser:
 
     def _string(self) -> str:
         opening = self.text[self.at]
-        closing = "\u201c\u201d\"" if opening in _SMART else opening
+        closing = '\u201c\u201d"' if opening in _SMART else opening
         plain = _PLAIN[closing]
         self.at += 1
         pieces: list[str] = []

@@ -73,9 +73,7 @@ class OpenAIStyleClient:
     def __repr__(self) -> str:
         return f"OpenAIStyleClient({self.base_url!r}, {self.model!r})"
 
-    def answer(
-        self, prompt: Prompt, cancel: threading.Event, progress: Callable[[str], None] | None = None
-    ) -> Reply:
+    def answer(self, prompt: Prompt, cancel: threading.Event, progress: Callable[[str], None] | None = None) -> Reply:
         """Ask the service; see `ModelClient.answer`.
 
         Raises:
@@ -182,7 +180,8 @@ def _humbler(habits: _Habits, fault: Fault) -> _Habits | None:
     if habits.stream and habits.stream_usage and ("stream_options" in said or "include_usage" in said):
         return replace(habits, stream_usage=False)
     if habits.structure != "none" and any(
-        word in said for word in ("response_format", "json_schema", "json schema", "json_object", "schema", "structured")
+        word in said
+        for word in ("response_format", "json_schema", "json schema", "json_object", "schema", "structured")
     ):
         return replace(habits, structure="object" if habits.structure == "schema" else "none")
     if habits.stream and "stream" in said:

@@ -47,9 +47,7 @@ class RecordedClient:
         self.name = "recorded"
         self.describes = f"Recorded answers from {self.folder.name!r} (made by {', '.join(models) or 'unknown'})"
 
-    def answer(
-        self, prompt: Prompt, cancel: threading.Event, progress: Callable[[str], None] | None = None
-    ) -> Reply:
+    def answer(self, prompt: Prompt, cancel: threading.Event, progress: Callable[[str], None] | None = None) -> Reply:
         """Play back the answer kept under the prompt's stage and key.
 
         Raises:
@@ -93,9 +91,7 @@ class Recorder:
         self.describes = f"{client.describes}, recorded into {self.folder.name!r}"
         self._lock = threading.Lock()
 
-    def answer(
-        self, prompt: Prompt, cancel: threading.Event, progress: Callable[[str], None] | None = None
-    ) -> Reply:
+    def answer(self, prompt: Prompt, cancel: threading.Event, progress: Callable[[str], None] | None = None) -> Reply:
         """Answer with the wrapped client and keep what it said.
 
         Raises:

@@ -49,7 +49,13 @@ def prelude_text() -> str:
     public = {(_module(name), name) for name in registry.CONSTRUCTORS}
     body, names = join_modules([*dict.fromkeys(roots), _REALISE], public)
     title = "# ---- what a room is written with "
-    lines = [title + "-" * (100 - len(title)), "", "from math import (", *(f"    {name}," for name in registry.MATH), ")"]
+    lines = [
+        title + "-" * (100 - len(title)),
+        "",
+        "from math import (",
+        *(f"    {name}," for name in registry.MATH),
+        ")",
+    ]
     lines += ["", *(f"{name} = {value!r}" for name, value in registry.CONSTANTS.items())]
     lines += [f"_recorder = {names['recorder', 'Recorder']}()"]
     lines += [f"{name} = _recorder.{name}" for name in registry.LINE_NAMES if name != "build"]

@@ -13,6 +13,9 @@ from .refusals import located
 from .scopes import Scope
 from .values import LONG, Code, Frame, Function, Native, settle, spend_argument
 
+STEPS_OF_VERTEX = 6
+"""What a vertex is counted as when a constructor has made it."""
+
 
 class Calls(Expressions):
     """Expressions with calls."""
@@ -103,7 +106,11 @@ def call_guarded(meter: Meter, native: Native, arguments: Code, keywords: Keywor
             for value in named.values():
                 if value.__class__ in LONG:
                     spend_argument(meter, value)
+            before = meter.vertices[0]
             result = call(*args, **named)
+            made = before - meter.vertices[0]
+            if made:
+                meter.spend(STEPS_OF_VERTEX * made)
             if result.__class__ is float and -1e300 < result < 1e300:
                 return result
             meter.watch()

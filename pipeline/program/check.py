@@ -8,7 +8,7 @@ import ast
 from ..errors import ProgramError
 from .functions import GENERATOR_TAKERS
 from .limits import Limits
-from .refusals import EXPRESSIONS, OPERATORS, STATEMENTS, attribute_refusal
+from .refusals import EXPRESSIONS, MOST_PROBLEMS, OPERATORS, STATEMENTS, attribute_refusal
 from .text import FORMAT, spec_of
 from .values import LARGEST_FLOAT, LARGEST_INT
 
@@ -46,6 +46,8 @@ class Checker:
             self.report(body[0], "blocks are nested too deeply", "Move the inner part into a def.")
             return
         for node in body:
+            if len(self.problems) >= MOST_PROBLEMS:
+                return
             self.statement(node, in_def, in_loop, depth)
 
     def statement(self, node: ast.stmt, in_def: bool, in_loop: bool, depth: int) -> None:

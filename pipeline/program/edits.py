@@ -119,7 +119,7 @@ def _add(state: Edited, edit: LayoutEdit) -> None:
     centre, size, category = (_given(edit, name) for name in ("centre", "size", "category"))
     proxy = ProxyLine(id=edit.id, category=category, centre=centre, size=size, yaw=edit.yaw or 0.0, parent=edit.parent)
     proxy.placement = edit.placement or ("floor" if edit.parent is None else "surface")
-    proxy.salience, proxy.label = edit.salience or "major", edit.label or ""
+    proxy.salience, proxy.label, proxy.shape = edit.salience or "major", edit.label or "", edit.shape or "box"
     state.proxies.insert(place_for(state.proxies, proxy), _checked(proxy))
     state.origins[edit.id] = None
 

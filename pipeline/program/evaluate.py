@@ -92,7 +92,6 @@ class Evaluation:
         self._constants = dict(vocabulary.constants)
         self._module = Scope(None)
         self._top: Frame = []
-        self._vertices = limits.vertices
 
     def feed(self, text: str, complete: bool = True) -> None:
         """Evaluate a text: first all of it is checked, then all of it runs.
@@ -123,13 +122,12 @@ class Evaluation:
 
     def _run(self, action: Callable[[], Any]) -> Any:
         self.meter.depth = 0
-        with vertex_budget(self._vertices) as left:
+        with vertex_budget(max(0, self.meter.vertices[0])) as left:
+            self.meter.vertices = left
             try:
                 return action()
             except Exception as error:
                 raise located(error, 0) from None
-            finally:
-                self._vertices = max(0, left[0])
 
     def _compile(self, text: str, complete: bool) -> Callable[[Frame], Any]:
         tree = parse(text, self.limits)

@@ -7,11 +7,12 @@ import ast
 from collections.abc import Callable
 from typing import Any
 
-from ..errors import ProgramError
 from . import arithmetic, fused, text
+from .items import item_of, slice_of, store_item
 from .limits import Meter
 from .scopes import Names, Scope
-from .values import UNSET, Code, Frame, Native, check_key, settle
+from .values import Code, Frame, Native, check_key, settle
+from .variables import load_global, load_local, load_outer, load_parameter, store_slot, unpack
 
 
 class Expressions:
@@ -235,135 +236,6 @@ def negative_literal(node: ast.UnaryOp) -> int | float | None:
         if isinstance(value, (int, float)) and not isinstance(value, bool):
             return -value
     return None
-
-
-def unset(name: str) -> ProgramError:
-    """The refusal of a variable that is read before it is set."""
-    return ProgramError(f"{name} is used before it is set")
-
-
-def load_parameter(slot: int) -> Code:
-    """A variable that always has a value."""
-    return lambda f: f[slot]
-
-
-def load_local(slot: int, name: str) -> Code:
-    """A variable of this frame."""
-
-    def run(f: Frame) -> Any:
-        value = f[slot]
-        if value is UNSET:
-            raise unset(name)
-        return value
-
-    return run
-
-
-def load_global(top: Frame, slot: int, name: str) -> Code:
-    """A variable of the module."""
-
-    def run(f: Frame) -> Any:
-        value = top[slot]
-        if value is UNSET:
-            raise unset(name)
-        return value
-
-    return run
-
-
-def load_outer(links: tuple[int, ...], slot: int, name: str) -> Code:
-    """A variable of a function around this one."""
-
-    def run(f: Frame) -> Any:
-        for link in links:
-            f = f[link]
-        value = f[slot]
-        if value is UNSET:
-            raise unset(name)
-        return value
-
-    return run
-
-
-def store_slot(slot: int) -> Callable[[Frame, Any], None]:
-    """Assigns to a variable of this frame."""
-
-    def run(f: Frame, value: Any) -> None:
-        f[slot] = value
-
-    return run
-
-
-def unpack(targets: tuple[Callable[[Frame, Any], None], ...]) -> Callable[[Frame, Any], None]:
-    """Assigns the items of a value to several targets."""
-    count = len(targets)
-
-    def run(f: Frame, value: Any) -> None:
-        found = []
-        for item in value:
-            found.append(item)
-            if len(found) > count:
-                raise ValueError(f"too many values to unpack (expected {count})")
-        if len(found) < count:
-            raise ValueError(f"not enough values to unpack (expected {count}, got {len(found)})")
-        for target, item in zip(targets, found, strict=True):
-            target(f, item)
-
-    return run
-
-
-def store_item(meter: Meter, container: Code, index: Code) -> Callable[[Frame, Any], None]:
-    """Assigns to an item of a list or dict."""
-
-    def run(f: Frame, value: Any) -> None:
-        put_item(meter, container(f), index(f), value)
-
-    return run
-
-
-def put_item(meter: Meter, place: Any, key: Any, value: Any) -> None:
-    """place[key] = value"""
-    if place.__class__ is dict:
-        check_key(meter, place, key)
-        if len(place) >= meter.limits.list_items and key not in place:
-            raise ProgramError(f"a dict has more than {meter.limits.list_items:,} items")
-        meter.spend(4)
-    elif place.__class__ is not list:
-        raise TypeError(f"items of a {type(place).__name__} cannot be assigned; use a list or a dict")
-    place[key] = value
-
-
-def get_item(meter: Meter, place: Any, key: Any) -> Any:
-    """place[key]"""
-    if place.__class__ is dict:
-        check_key(meter, place, key)
-    return place[key]
-
-
-def item_of(meter: Meter, container: Code, index: Code) -> Code:
-    """container[index]"""
-
-    def run(f: Frame) -> Any:
-        place = container(f)
-        key = index(f)
-        if place.__class__ is dict:
-            check_key(meter, place, key)
-        return place[key]
-
-    return run
-
-
-def slice_of(meter: Meter, container: Code, bounds: tuple[Code | None, ...]) -> Code:
-    """container[lower:upper:step]"""
-
-    def run(f: Frame) -> Any:
-        place = container(f)
-        part = slice(*(None if bound is None else bound(f) for bound in bounds))
-        if place.__class__ is dict:
-            raise TypeError("a dict has no slices")
-        return settle(meter, place[part])
-
-    return run
 
 
 def all_of(values: tuple[Code, ...]) -> Code:

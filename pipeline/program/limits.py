@@ -31,7 +31,7 @@ class Limits:
         seconds: wall-clock time, the backstop behind the others.
     """
 
-    text_bytes: int = 262_144
+    text_bytes: int = 131_072
     nesting: int = 32
     operators: int = 100
     blocks: int = 12
@@ -41,14 +41,14 @@ class Limits:
     list_items: int = 100_000
     range_items: int = 1_000_000
     string_chars: int = 10_000
-    vertices: int = 500_000
+    vertices: int = 250_000
     seconds: float = 10.0
 
 
 DEFAULT_LIMITS = Limits()
 """For one text from a model: a layout, an object program. Everything beyond is stopped within about a second."""
 
-FINISHED_ROOM_LIMITS = Limits(text_bytes=4_194_304, steps=40_000_000, vertices=5_000_000, seconds=60.0)
+FINISHED_ROOM_LIMITS = Limits(text_bytes=1_048_576, steps=60_000_000, vertices=5_000_000, seconds=60.0)
 """For a finished room whose objects were each evaluated within DEFAULT_LIMITS before."""
 
 
@@ -61,15 +61,17 @@ class Meter:
     Attributes:
         left: steps left of the current chunk.
         depth: language functions that are being called at the moment.
+        vertices: one number, the vertices that constructors may still make; `prelude.budget` counts it down.
     """
 
-    __slots__ = ("left", "depth", "limits", "reserve", "deadline")
+    __slots__ = ("left", "depth", "vertices", "limits", "reserve", "deadline")
 
     def __init__(self, limits: Limits) -> None:
         self.limits = limits
         self.left = 0
         self.reserve = limits.steps
         self.depth = 0
+        self.vertices = [limits.vertices]
         self.deadline = time.monotonic() + limits.seconds
 
     @property

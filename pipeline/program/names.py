@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from ..errors import ProgramError
-from .refusals import unknown_name
+from .refusals import MOST_PROBLEMS, unknown_name
 from .scopes import Definition, Names, Scope
 
 
@@ -56,6 +56,8 @@ def check_names(names: Names, known: Known, complete: bool = True) -> list[Progr
     for node, scope in names.uses:
         if node.id in own or scope.owner(node.id) is not None or not complete:
             continue
+        if len(problems) >= MOST_PROBLEMS:
+            break
         visible = set(own)
         around: Scope | None = scope
         while around is not None:

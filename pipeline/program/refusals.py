@@ -10,6 +10,7 @@ from collections.abc import Iterable, Sequence
 from ..errors import ProgramError
 
 MOST_PROBLEMS = 10
+MOST_CANDIDATES = 500
 
 
 class ProgramProblems(ProgramError):
@@ -133,7 +134,8 @@ def unknown_name(name: str, line: int, known: Iterable[str]) -> ProgramError:
     """An unknown name, with the name that was probably meant."""
     if name in NAMES:
         return ProgramError(f"{name} is not in the room language", line, NAMES[name])
-    close = difflib.get_close_matches(name[:60], list(known), 1)
+    candidates = [other for other in known if abs(len(other) - len(name)) <= 3][:MOST_CANDIDATES]
+    close = difflib.get_close_matches(name[:60], candidates, 1)
     return ProgramError(f"the name {name[:60]} is not known", line, f"Did you mean {close[0]}?" if close else "")
 
 

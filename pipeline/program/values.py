@@ -22,10 +22,13 @@ LARGEST_INT = 2**63
 LARGEST_FLOAT = 1.7976931348623157e308
 MOST_VALUE_DEPTH = 16
 MOST_KEY_ITEMS = 8
+STEPS_OF_SHAPE = 60
+"""What a constructor that walks through a list of shapes does for each is counted as."""
 
 NUMBERS: frozenset[Any] = frozenset({int, float, bool})
 SCALARS: frozenset[Any] = frozenset({int, float, bool, str, type(None)})
 CONTAINERS: frozenset[Any] = frozenset({list, tuple, dict})
+PLAIN: frozenset[Any] = SCALARS | CONTAINERS
 LONG: frozenset[Any] = frozenset({list, tuple, dict, str})
 SIZED: frozenset[Any] = frozenset({list, tuple, dict, str, range})
 
@@ -180,12 +183,12 @@ def too_many(meter: Meter) -> ProgramError:
 
 
 def measure(meter: Meter, value: Any) -> int:
-    """Items of a container and of all containers in it, counted as often as they are met.
+    """What walking through a container and all containers in it takes: items as often as they are met, shapes more.
 
     Raises ProgramError for what is too large or too deep to be compared, printed or handed to a constructor; a list
     that contains itself is endlessly deep.
     """
-    count = 0
+    count = effort = 0
     most = 4 * meter.limits.list_items
     open_values: list[tuple[Any, int]] = [(value, 1)]
     while open_values:
@@ -199,10 +202,12 @@ def measure(meter: Meter, value: Any) -> int:
         kinds = set(map(type, members))
         if str in kinds:
             count += sum(len(member) for member in members if member.__class__ is str)
+        if not PLAIN.issuperset(kinds):
+            effort += STEPS_OF_SHAPE * len(members)
         if not kinds.isdisjoint(CONTAINERS):
             open_values.extend((member, depth + 1) for member in members if member.__class__ in CONTAINERS)
     meter.spend(count >> 2)
-    return count
+    return count + effort
 
 
 def spend_argument(meter: Meter, value: Any) -> None:

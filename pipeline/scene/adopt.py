@@ -13,7 +13,7 @@ def adopt(reading: Reading) -> None:
     The mesh of a copy stays as it is when the program could only replace it by a box.
     """
     for obj, identifier in reading.adopted:
-        plain = obj.get(FIELD + "shape", "box") == "box" and not obj.get(FIELD + "furnished", False)
+        plain = not obj.get(FIELD + "furnished", False)
         obj[ID], obj[KIND], obj[NAME] = identifier, "proxy", obj.name
         if LINE in obj:
             del obj[LINE]

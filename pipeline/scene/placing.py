@@ -66,6 +66,7 @@ def new_proxy_edit(
         placement=placement,
         parent=parent,
         salience=salience,
+        shape=obj.get(FIELD + "shape", "box") if is_copy else "box",
         reason="copied by hand" if is_copy else "added by hand",
         origin="artist",
     )

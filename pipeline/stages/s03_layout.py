@@ -137,9 +137,8 @@ def run(view: View) -> StageRun:
     analysis, calibration, graph = view.need(SceneAnalysis), view.need(Calibration), view.need(SceneGraph)
     evidence = Evidence({o.id: o for o in analysis.objects})
     layout, findings = first_layout(analysis, calibration, evidence)
-    limit = view.number("iterations")
     target = view.number("target") or TARGET
-    loop = _Loop(view, calibration, graph, T_MAX if limit is None else min(T_MAX, int(limit)), target)
+    loop = _Loop(view, calibration, graph, _rounds(view), target)
     best = yield from loop.run(layout, evidence)
     program = LayoutProgram(
         text=print_layout(best.layout),
@@ -150,6 +149,12 @@ def run(view: View) -> StageRun:
         findings=[*findings, *loop.findings],
     )
     return [program]
+
+
+def _rounds(view: View) -> int:
+    """The most critiques that the artist allows, 0 to T_MAX."""
+    text = view.settings.get("iterations", "").strip()
+    return min(T_MAX, int(text)) if text.isdigit() else T_MAX
 
 
 STAGE = Stage(

@@ -30,9 +30,19 @@ def evaluated_verts(obj: bpy.types.Object) -> tuple[Array, list[tuple[int, ...]]
     return verts.reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3], faces
 
 
-def simulate(sheet: Part, obstacles: Sequence[Part], frames: int, *, pressure: float = 0.0, gravity: float = 1.0,
-             stiffness: float = 12.0, bending: float = 0.6, mass: float = 0.3, shrink: float = 0.0,
-             distance: float = 0.012) -> Array:
+def simulate(
+    sheet: Part,
+    obstacles: Sequence[Part],
+    frames: int,
+    *,
+    pressure: float = 0.0,
+    gravity: float = 1.0,
+    stiffness: float = 12.0,
+    bending: float = 0.6,
+    mass: float = 0.3,
+    shrink: float = 0.0,
+    distance: float = 0.012,
+) -> Array:
     """Vertices of the sheet after `frames` frames of falling onto the obstacles (or of being blown up)."""
     scene = bpy.context.scene
     cloth = temporary(sheet, "cloth")

@@ -1,6 +1,6 @@
 """Makes the sample bedroom: `picture.png` and `truth.json` beside this file.
 
-    .venv/bin/python samples/bedroom/make.py [--out DIR] [--percent 100] [--samples 16] [--blend FILE] [--no-render]
+.venv/bin/python samples/bedroom/make.py [--out DIR] [--percent 100] [--samples 16] [--blend FILE] [--no-render]
 """
 
 from __future__ import annotations

@@ -63,8 +63,9 @@ class Nodes:
 
 def plain(name: str, colour: str, roughness: float = 0.5, metallic: float = 0.0, **inputs: Any) -> bpy.types.Material:
     n = Nodes(name)
-    return n.surface(n.add("BsdfPrincipled", {"Base Color": rgb(colour), "Roughness": roughness,
-                                              "Metallic": metallic, **inputs}))
+    return n.surface(
+        n.add("BsdfPrincipled", {"Base Color": rgb(colour), "Roughness": roughness, "Metallic": metallic, **inputs})
+    )
 
 
 def wood(name: str, dark: str, light: str, along: str = "x", roughness: float = 0.42) -> bpy.types.Material:
@@ -77,8 +78,9 @@ def wood(name: str, dark: str, light: str, along: str = "x", roughness: float = 
     fine = n.add("TexNoise", {"Vector": where, "Scale": 7.0, "Detail": 3.0})
     mixed = n.add("Mix", {"0": 0.3, "2": grain.outputs[0], "3": fine.outputs[0]}).outputs[0]
     colour = n.ramp(mixed, [(0.32, rgb(dark)), (0.66, rgb(light))])
-    return n.surface(n.add("BsdfPrincipled", {"Base Color": colour, "Roughness": roughness,
-                                              "Normal": n.bump(mixed, 0.002, 0.35)}))
+    return n.surface(
+        n.add("BsdfPrincipled", {"Base Color": colour, "Roughness": roughness, "Normal": n.bump(mixed, 0.002, 0.35)})
+    )
 
 
 def planks(name: str) -> bpy.types.Material:
@@ -91,19 +93,33 @@ def planks(name: str) -> bpy.types.Material:
     mixed = n.add("Mix", {"0": 0.28, "2": grain.outputs[0], "3": fine.outputs[0]}).outputs[0]
     colour = n.ramp(mixed, [(0.30, rgb("#7c6048")), (0.52, rgb("#9c7d5e")), (0.72, rgb("#b09272"))])
     tone = n.add("Attribute", attribute_name="tone").outputs["Fac"]
-    toned = n.add("HueSaturation", {"Color": colour, "Saturation": 0.92,
-                                    "Value": n.add("MapRange", {"Value": tone, "To Min": 0.80, "To Max": 1.12}).outputs[0]})
-    return n.surface(n.add("BsdfPrincipled", {"Base Color": toned.outputs[0], "Roughness": 0.40,
-                                              "Normal": n.bump(mixed, 0.002, 0.25)}))
+    toned = n.add(
+        "HueSaturation",
+        {
+            "Color": colour,
+            "Saturation": 0.92,
+            "Value": n.add("MapRange", {"Value": tone, "To Min": 0.80, "To Max": 1.12}).outputs[0],
+        },
+    )
+    return n.surface(
+        n.add(
+            "BsdfPrincipled", {"Base Color": toned.outputs[0], "Roughness": 0.40, "Normal": n.bump(mixed, 0.002, 0.25)}
+        )
+    )
 
 
-def fabric(name: str, dark: str, light: str, sheen: float = 0.25, mottling: float = 7.0,
-           depth: float = 0.0) -> bpy.types.Material:
+def fabric(
+    name: str, dark: str, light: str, sheen: float = 0.25, mottling: float = 7.0, depth: float = 0.0
+) -> bpy.types.Material:
     """Cloth: a mottled colour, and with `depth` (metres) a slubby bump. The weave itself is finer than a pixel."""
     n = Nodes(name)
     patches = n.add("TexNoise", {"Vector": n.place((1, 1, 1)), "Scale": mottling, "Detail": 5.0, "Roughness": 0.75})
-    inputs = {"Base Color": n.ramp(patches.outputs[0], [(0.30, rgb(dark)), (0.70, rgb(light))]), "Roughness": 0.92,
-              "Sheen Weight": sheen, "Sheen Roughness": 0.4}
+    inputs = {
+        "Base Color": n.ramp(patches.outputs[0], [(0.30, rgb(dark)), (0.70, rgb(light))]),
+        "Roughness": 0.92,
+        "Sheen Weight": sheen,
+        "Sheen Roughness": 0.4,
+    }
     if depth:
         slub = n.add("TexNoise", {"Vector": n.place((1, 1, 1)), "Scale": 90.0, "Detail": 2.0})
         inputs["Normal"] = n.bump(slub.outputs[0], depth, 0.6)
@@ -114,11 +130,23 @@ def knit(name: str, dark: str, light: str) -> bpy.types.Material:
     """A chunky ribbed knit; UV x runs across the ribs."""
     n = Nodes(name)
     where = n.place((1, 1, 1), "UV")
-    ribs = n.add("TexWave", {"Vector": where, "Scale": 20.0, "Distortion": 1.6, "Detail": 2.0, "Detail Scale": 3.0},
-                 bands_direction="X")
+    ribs = n.add(
+        "TexWave",
+        {"Vector": where, "Scale": 20.0, "Distortion": 1.6, "Detail": 2.0, "Detail Scale": 3.0},
+        bands_direction="X",
+    )
     colour = n.ramp(ribs.outputs["Fac"], [(0.1, rgb(dark)), (0.8, rgb(light))])
-    return n.surface(n.add("BsdfPrincipled", {"Base Color": colour, "Roughness": 0.95, "Sheen Weight": 0.3,
-                                              "Normal": n.bump(ribs.outputs["Fac"], 0.004, 0.6)}))
+    return n.surface(
+        n.add(
+            "BsdfPrincipled",
+            {
+                "Base Color": colour,
+                "Roughness": 0.95,
+                "Sheen Weight": 0.3,
+                "Normal": n.bump(ribs.outputs["Fac"], 0.004, 0.6),
+            },
+        )
+    )
 
 
 def sheer(name: str, colour: str, through: float) -> bpy.types.Material:
@@ -141,9 +169,23 @@ def rug(name: str) -> bpy.types.Material:
     n = Nodes(name)
     uv = n.add("TexCoord").outputs["UV"]
     wobble = n.add("TexNoise", {"Vector": uv, "Scale": 9.0, "Detail": 3.0})
-    bent = n.add("VectorMath", {"0": uv, "1": n.add("VectorMath", {
-        "0": n.add("VectorMath", {"0": wobble.outputs["Color"], "1": (0.5, 0.5, 0.5)}, operation="SUBTRACT").outputs[0],
-        "Scale": 0.022}, operation="SCALE").outputs[0]}, operation="ADD").outputs[0]
+    bent = n.add(
+        "VectorMath",
+        {
+            "0": uv,
+            "1": n.add(
+                "VectorMath",
+                {
+                    "0": n.add(
+                        "VectorMath", {"0": wobble.outputs["Color"], "1": (0.5, 0.5, 0.5)}, operation="SUBTRACT"
+                    ).outputs[0],
+                    "Scale": 0.022,
+                },
+                operation="SCALE",
+            ).outputs[0],
+        },
+        operation="ADD",
+    ).outputs[0]
     parts = n.add("SeparateXYZ", {"0": bent}).outputs
 
     def math(operation: str, a: Any, b: Any = 0.0) -> Any:
@@ -154,19 +196,33 @@ def rug(name: str) -> bpy.types.Material:
     for diagonal in (math("ADD", u, v), math("SUBTRACT", u, v)):
         lines.append(math("ABSOLUTE", math("SUBTRACT", math("FRACT", diagonal), 0.5)))
     lattice = math("LESS_THAN", math("MINIMUM", *lines), 0.045)
-    edge = math("MINIMUM", math("MINIMUM", parts[0], math("SUBTRACT", 1.0, parts[0])),
-                math("MINIMUM", parts[1], math("SUBTRACT", 1.0, parts[1])))
+    edge = math(
+        "MINIMUM",
+        math("MINIMUM", parts[0], math("SUBTRACT", 1.0, parts[0])),
+        math("MINIMUM", parts[1], math("SUBTRACT", 1.0, parts[1])),
+    )
     inside = math("GREATER_THAN", edge, 0.075)
     border = math("MULTIPLY", math("LESS_THAN", edge, 0.058), math("GREATER_THAN", edge, 0.040))
     mask = math("MAXIMUM", math("MULTIPLY", lattice, inside), border)
     pile = n.add("TexNoise", {"Vector": n.place((1, 1, 1)), "Scale": 110.0, "Detail": 3.0, "Roughness": 0.8})
     patches = n.add("TexNoise", {"Vector": n.place((1, 1, 1)), "Scale": 5.0, "Detail": 4.0})
-    cream = n.ramp(math("ADD", math("MULTIPLY", pile.outputs[0], 0.7), math("MULTIPLY", patches.outputs[0], 0.3)),
-                   [(0.35, rgb("#b7ab98")), (0.62, rgb("#e2dacb"))])
+    cream = n.ramp(
+        math("ADD", math("MULTIPLY", pile.outputs[0], 0.7), math("MULTIPLY", patches.outputs[0], 0.3)),
+        [(0.35, rgb("#b7ab98")), (0.62, rgb("#e2dacb"))],
+    )
     ink = n.ramp(pile.outputs[0], [(0.3, rgb("#57514b")), (0.7, rgb("#7d756c"))])
     colour = n.add("Mix", {"0": mask, "6": cream, "7": ink}, data_type="RGBA").outputs[2]
-    return n.surface(n.add("BsdfPrincipled", {"Base Color": colour, "Roughness": 1.0, "Sheen Weight": 0.3,
-                                              "Normal": n.bump(pile.outputs[0], 0.006, 0.7)}))
+    return n.surface(
+        n.add(
+            "BsdfPrincipled",
+            {
+                "Base Color": colour,
+                "Roughness": 1.0,
+                "Sheen Weight": 0.3,
+                "Normal": n.bump(pile.outputs[0], 0.006, 0.7),
+            },
+        )
+    )
 
 
 def leaf(name: str, dark: str, light: str) -> bpy.types.Material:
@@ -192,10 +248,17 @@ def print_art(name: str) -> bpy.types.Material:
     sun = n.add("VectorMath", {"0": sun, "1": (1.5, 1.0, 0.0)}, operation="MULTIPLY").outputs[0]
     disc = math("LESS_THAN", n.add("VectorMath", {"0": sun}, operation="LENGTH").outputs["Value"], 0.17)
     colour = n.add("Mix", {"0": disc, "6": colour, "7": rgb("#cf8a4d")}, data_type="RGBA").outputs[2]
-    for height, wave, phase, tint in ((0.56, 5.0, 0.6, "#b9b7a0"), (0.40, 6.5, 2.9, "#7f8d78"), (0.24, 4.2, 4.6, "#a85b3f")):
-        hill = math("ADD", height, math("MULTIPLY", math("SINE", math("ADD", math("MULTIPLY", parts[0], wave), phase)), 0.10))
-        colour = n.add("Mix", {"0": math("LESS_THAN", parts[1], hill), "6": colour, "7": rgb(tint)},
-                       data_type="RGBA").outputs[2]
+    for height, wave, phase, tint in (
+        (0.56, 5.0, 0.6, "#b9b7a0"),
+        (0.40, 6.5, 2.9, "#7f8d78"),
+        (0.24, 4.2, 4.6, "#a85b3f"),
+    ):
+        hill = math(
+            "ADD", height, math("MULTIPLY", math("SINE", math("ADD", math("MULTIPLY", parts[0], wave), phase)), 0.10)
+        )
+        colour = n.add(
+            "Mix", {"0": math("LESS_THAN", parts[1], hill), "6": colour, "7": rgb(tint)}, data_type="RGBA"
+        ).outputs[2]
     return n.surface(n.add("BsdfPrincipled", {"Base Color": colour, "Roughness": 0.6}))
 
 

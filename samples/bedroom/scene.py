@@ -69,9 +69,14 @@ def add_shell() -> None:
     obj = add_part(boards, None, "floor")
     obj.data.attributes.new("tone", "FLOAT", "POINT").data.foreach_set("value", tone)
     under = shell.rectangle((-2.42, -2.07, -0.006), (2.42, -2.07, -0.006), (2.42, 2.07, -0.006), "soil")
-    groups: list[tuple[str, Sequence[Part]]] = [*shell.walls(), ("door", shell.door()), ("window", shell.window()),
-                                                ("wall_tops", [shell.wall_tops()]), ("outside", shell.outside()),
-                                                ("subfloor", [under])]
+    groups: list[tuple[str, Sequence[Part]]] = [
+        *shell.walls(),
+        ("door", shell.door()),
+        ("window", shell.window()),
+        ("wall_tops", [shell.wall_tops()]),
+        ("outside", shell.outside()),
+        ("subfloor", [under]),
+    ]
     for name, parts in groups:
         for k, part in enumerate(parts):
             add_part(part, None, f"{name}.{k:02d}")
@@ -81,8 +86,14 @@ def add_shell() -> None:
     ceiling.visible_camera = False  # light behaves as in a closed room, the camera looks through
 
 
-def area_light(name: str, place: tuple[float, float, float], turn: tuple[float, float, float], size: tuple[float, float],
-               watts: float, colour: str) -> None:
+def area_light(
+    name: str,
+    place: tuple[float, float, float],
+    turn: tuple[float, float, float],
+    size: tuple[float, float],
+    watts: float,
+    colour: str,
+) -> None:
     light = bpy.data.lights.new(name, "AREA")
     light.shape, light.size, light.size_y = "RECTANGLE", *size
     light.energy, light.color = watts, rgb(colour)[:3]
@@ -109,7 +120,11 @@ def add_light(roots: dict[str, bpy.types.Object]) -> None:
         if bulb is None:
             continue
         light = bpy.data.lights.new(name, "POINT")
-        light.energy, light.color, light.shadow_soft_size = (9.0 if name == "floor_lamp" else 5.0), rgb("#ffc98a")[:3], 0.035
+        light.energy, light.color, light.shadow_soft_size = (
+            (9.0 if name == "floor_lamp" else 5.0),
+            rgb("#ffc98a")[:3],
+            0.035,
+        )
         lamp = bpy.data.objects.new(name + ".light", light)
         corners = np.array([list(c) for c in bulb.bound_box])
         lamp.location = root.matrix_world @ Matrix.Translation(corners.mean(0)).translation

@@ -44,11 +44,13 @@ def rotation(degrees: float, axis: str = "z") -> Array:
     """Rotation matrix, counter-clockwise about an axis."""
     a = np.radians(degrees)
     c, s = np.cos(a), np.sin(a)
-    return np.array({
-        "x": [[1, 0, 0], [0, c, -s], [0, s, c]],
-        "y": [[c, 0, s], [0, 1, 0], [-s, 0, c]],
-        "z": [[c, -s, 0], [s, c, 0], [0, 0, 1]],
-    }[axis])
+    return np.array(
+        {
+            "x": [[1, 0, 0], [0, c, -s], [0, s, c]],
+            "y": [[c, 0, s], [0, 1, 0], [-s, 0, c]],
+            "z": [[c, -s, 0], [s, c, 0], [0, 0, 1]],
+        }[axis]
+    )
 
 
 def join(parts: Sequence[Part]) -> Part:
@@ -99,8 +101,15 @@ def box_axis(half: float, radius: float, segments: int, inner: int) -> Array:
     return np.concatenate([-(flat + bevel[::-1]), middle, flat + bevel])
 
 
-def box(size: Sequence[float], centre: Sequence[float], material: str, radius: float = 0.004, segments: int = 3,
-        inner: int | tuple[int, int, int] = 1, name: str = "part") -> Part:
+def box(
+    size: Sequence[float],
+    centre: Sequence[float],
+    material: str,
+    radius: float = 0.004,
+    segments: int = 3,
+    inner: int | tuple[int, int, int] = 1,
+    name: str = "part",
+) -> Part:
     """A box with rounded edges. `inner` subdivides the flat middle along each axis, for later bending."""
     half = np.array(size, float) / 2
     radius = min(radius, 0.999 * float(half.min()))
@@ -130,8 +139,15 @@ def box(size: Sequence[float], centre: Sequence[float], material: str, radius: f
     return Part(verts, [tuple(int(index[i]) for i in f) for f in faces], material, name=name)
 
 
-def cushion(size: Sequence[float], centre: Sequence[float], material: str, radius: float = 0.05, crown: float = 0.03,
-            seed: int = 0, inner: int = 14) -> Part:
+def cushion(
+    size: Sequence[float],
+    centre: Sequence[float],
+    material: str,
+    radius: float = 0.05,
+    crown: float = 0.03,
+    seed: int = 0,
+    inner: int = 14,
+) -> Part:
     """A soft upholstered box: rounded, its top crowned, its surface a little uneven."""
     part = box(size, centre, material, radius, 5, (inner, inner, 3))
     c, h = np.array(centre, float), np.array(size, float) / 2
@@ -148,8 +164,9 @@ def cushion(size: Sequence[float], centre: Sequence[float], material: str, radiu
     return part.bent(soften)
 
 
-def lathe(profile: Sequence[tuple[float, float]], material: str, centre: Sequence[float] = (0, 0, 0),
-          segments: int = 40) -> Part:
+def lathe(
+    profile: Sequence[tuple[float, float]], material: str, centre: Sequence[float] = (0, 0, 0), segments: int = 40
+) -> Part:
     """A surface of revolution about z from (radius, height) pairs; radius 0 at an end closes it."""
     p = np.array(profile, float)
     angle = np.linspace(0, 2 * np.pi, segments, endpoint=False)
@@ -167,7 +184,9 @@ def smooth_profile(points: Sequence[tuple[float, float]], steps: int = 8) -> lis
     for i in range(1, len(p) - 2):
         for t in np.linspace(0, 1, steps, endpoint=False):
             a, b, c, d = p[i - 1 : i + 3]
-            out.append(0.5 * (2 * b + (c - a) * t + (2 * a - 5 * b + 4 * c - d) * t**2 + (3 * b - a - 3 * c + d) * t**3))
+            out.append(
+                0.5 * (2 * b + (c - a) * t + (2 * a - 5 * b + 4 * c - d) * t**2 + (3 * b - a - 3 * c + d) * t**3)
+            )
     out.append(p[-2])
     return [(float(x), float(y)) for x, y in out]
 
@@ -220,8 +239,11 @@ def rounded_rectangle(width: float, height: float, radius: float, steps: int = 6
     out = []
     for k, (sx, sy) in enumerate(((1, 1), (-1, 1), (-1, -1), (1, -1))):
         a = np.radians(90 * k) + np.linspace(0, np.pi / 2, steps)
-        out.append(np.stack([sx * (width / 2 - radius) + radius * np.cos(a),
-                             sy * (height / 2 - radius) + radius * np.sin(a)], 1))
+        out.append(
+            np.stack(
+                [sx * (width / 2 - radius) + radius * np.cos(a), sy * (height / 2 - radius) + radius * np.sin(a)], 1
+            )
+        )
     return np.vstack(out)
 
 

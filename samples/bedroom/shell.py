@@ -27,10 +27,13 @@ def floor_boards() -> tuple[Part, np.ndarray]:
                 continue
             c, d = y, min(y + breadth, high_y)
             e = 0.0018
-            ring = [(a + gap / 2, b - gap / 2, c + gap / 2, d - gap / 2, -0.002), (a + gap / 2 + e, b - gap / 2 - e,
-                     c + gap / 2 + e, d - gap / 2 - e, 0.0)]
-            verts = np.array([[px, py, z] for x0, x1, y0, y1, z in ring
-                              for px, py in ((x0, y0), (x1, y0), (x1, y1), (x0, y1))])
+            ring = [
+                (a + gap / 2, b - gap / 2, c + gap / 2, d - gap / 2, -0.002),
+                (a + gap / 2 + e, b - gap / 2 - e, c + gap / 2 + e, d - gap / 2 - e, 0.0),
+            ]
+            verts = np.array(
+                [[px, py, z] for x0, x1, y0, y1, z in ring for px, py in ((x0, y0), (x1, y0), (x1, y1), (x0, y1))]
+            )
             faces = [(4, 5, 6, 7), *[(i, (i + 1) % 4, 4 + (i + 1) % 4, 4 + i) for i in range(4)]]
             shift = rng.uniform(0, 40, 2)
             parts.append(Part(verts, faces, "floor", False, uv=verts[:, :2] - [a, c] + shift))
@@ -39,19 +42,28 @@ def floor_boards() -> tuple[Part, np.ndarray]:
     for p in parts:
         faces += [tuple(i + start for i in f) for f in p.faces]
         start += 8
-    boards = Part(np.vstack([p.verts for p in parts]), faces, "floor", False,
-                  uv=np.vstack([p.uv for p in parts if p.uv is not None]), name="boards")
+    boards = Part(
+        np.vstack([p.verts for p in parts]),
+        faces,
+        "floor",
+        False,
+        uv=np.vstack([p.uv for p in parts if p.uv is not None]),
+        name="boards",
+    )
     return boards, np.concatenate(tones)
 
 
-def rectangle(a: tuple[float, float, float], b: tuple[float, float, float], c: tuple[float, float, float],
-              material: str) -> Part:
+def rectangle(
+    a: tuple[float, float, float], b: tuple[float, float, float], c: tuple[float, float, float], material: str
+) -> Part:
     """The rectangle with corners a, b, c, a + c - b."""
     p = np.array([a, b, c], float)
     return Part(np.vstack([p, p[0] + p[2] - p[1]]), [(0, 1, 2, 3)], material, False)
 
 
-def wall_face(start: tuple[float, float], end: tuple[float, float], opening: Opening | None, material: str) -> list[Part]:
+def wall_face(
+    start: tuple[float, float], end: tuple[float, float], opening: Opening | None, material: str
+) -> list[Part]:
     """The inner face of a wall from start to end, with a hole, and the hole's reveals."""
     s, e = np.array(start), np.array(end)
     along = (e - s) / np.linalg.norm(e - s)
@@ -78,8 +90,12 @@ def wall_face(start: tuple[float, float], end: tuple[float, float], opening: Ope
 def walls() -> list[tuple[str, list[Part]]]:
     """(wall id, parts) with the inner faces seen from inside counter-clockwise, the baseboards and the outside."""
     x, y = W / 2, D / 2
-    corners = {"wall_south": ((-x, -y), (x, -y)), "wall_east": ((x, -y), (x, y)),
-               "wall_north": ((x, y), (-x, y)), "wall_west": ((-x, y), (-x, -y))}
+    corners = {
+        "wall_south": ((-x, -y), (x, -y)),
+        "wall_east": ((x, -y), (x, y)),
+        "wall_north": ((x, y), (-x, y)),
+        "wall_west": ((-x, y), (-x, -y)),
+    }
     holes = {DOOR.wall: DOOR, WINDOW.wall: WINDOW}
     out = []
     for name, (start, end) in corners.items():
@@ -102,7 +118,9 @@ def wall_tops() -> Part:
     """The cut faces: a flat ring at the top of the walls, 0.2 mm above them."""
     z = H + 0.0002
     rings = [[(-x, -y, z), (x, -y, z), (x, y, z), (-x, y, z)] for x, y in ((W / 2, D / 2), (W / 2 + T, D / 2 + T))]
-    return Part(np.array(rings[0] + rings[1]), [f[::-1] for f in grid_faces(2, 4, close_v=True)], "cut", False, name="wall_tops")
+    return Part(
+        np.array(rings[0] + rings[1]), [f[::-1] for f in grid_faces(2, 4, close_v=True)], "cut", False, name="wall_tops"
+    )
 
 
 def outside() -> list[Part]:
@@ -112,7 +130,9 @@ def outside() -> list[Part]:
     parts: list[Part] = []
     for i, (name, hole) in enumerate((("s", DOOR), ("e", None), ("n", WINDOW), ("w", None))):
         start, end = np.array(corners[i]), np.array(corners[(i + 1) % 4])
-        parts += wall_face(tuple(start), tuple(end), hole, "wall")[: 1 if hole is None else (3 if hole.sill == 0 else 4)]
+        parts += wall_face(tuple(start), tuple(end), hole, "wall")[
+            : 1 if hole is None else (3 if hole.sill == 0 else 4)
+        ]
         parts[-1].name = name
     return parts
 
@@ -135,14 +155,31 @@ def door() -> list[Part]:
     for z, height in ((0.52, 0.72), (1.45, 0.92)):
         for side in (-1, 1):
             for s in (-1, 1):
-                leaf.append(box((0.025, 0.012, height), (-wide / 2 + s * (wide / 2 - 0.13), side * 0.021, z), "door", 0.005))
-                leaf.append(box((wide - 0.26, 0.012, 0.025), (-wide / 2, side * 0.021, z + s * height / 2), "door", 0.005))
+                leaf.append(
+                    box((0.025, 0.012, height), (-wide / 2 + s * (wide / 2 - 0.13), side * 0.021, z), "door", 0.005)
+                )
+                leaf.append(
+                    box((wide - 0.26, 0.012, 0.025), (-wide / 2, side * 0.021, z + s * height / 2), "door", 0.005)
+                )
     for side in (-1, 1):
         plate = lathe([(0, 0), (0.026, 0), (0.024, 0.008), (0, 0.009)], "brass", segments=24).turned(-90 * side, "x")
         leaf.append(plate.moved(-wide + 0.07, side * 0.020, 1.02))
         y = side * 0.052
-        leaf.append(tube(np.array([[-wide + 0.07, side * 0.022, 1.02], [-wide + 0.07, y, 1.02], [-wide + 0.10, y, 1.02],
-                                   [-wide + 0.19, y, 1.02]]), 0.009, "brass", 12))
+        leaf.append(
+            tube(
+                np.array(
+                    [
+                        [-wide + 0.07, side * 0.022, 1.02],
+                        [-wide + 0.07, y, 1.02],
+                        [-wide + 0.10, y, 1.02],
+                        [-wide + 0.19, y, 1.02],
+                    ]
+                ),
+                0.009,
+                "brass",
+                12,
+            )
+        )
     hinge = (DOOR.end[0] - 0.005, -D / 2 - 0.02, 0.0)
     return [p.turned(-DOOR_OPEN_DEGREES).moved(*hinge) for p in leaf] + architrave(DOOR, 1)
 
@@ -156,7 +193,9 @@ def window() -> list[Part]:
     parts = [box((b - a + 0.10, T + 0.03, 0.03), (middle, D / 2 + T / 2 - 0.02, z0 + 0.005), "trim", 0.008)]
     for x0, x1 in ((a, middle), (middle, b)):
         parts += [box((bar, 0.05, z1 - z0), (x, y, (z0 + z1) / 2), "trim", 0.006) for x in (x0 + bar / 2, x1 - bar / 2)]
-        parts += [box((x1 - x0, 0.05, bar), ((x0 + x1) / 2, y, z), "trim", 0.006) for z in (z0 + bar / 2 + 0.02, z1 - bar / 2)]
+        parts += [
+            box((x1 - x0, 0.05, bar), ((x0 + x1) / 2, y, z), "trim", 0.006) for z in (z0 + bar / 2 + 0.02, z1 - bar / 2)
+        ]
         parts.append(box((x1 - x0 - bar, 0.012, 0.022), ((x0 + x1) / 2, y, z0 + 0.62 * (z1 - z0)), "trim", 0.004))
     pane = rectangle((a, y, z0), (b, y, z0), (b, y, z1), "glass")
     return [*parts, *architrave(WINDOW, -1, 0.05), pane]

@@ -26,8 +26,10 @@ def mattress() -> Part:
 
 def bed_obstacles() -> list[Part]:
     """What the cloth falls on: the mattress, and the bed frame below it."""
-    return [box((*MATTRESS, 0.27), (0, -0.03, MATTRESS_TOP - 0.135), "cotton", 0.07, 4, 12),
-            box((1.66, 2.02, 0.24), (0, -0.03, 0.22), "cotton", 0.02, 2, 10)]
+    return [
+        box((*MATTRESS, 0.27), (0, -0.03, MATTRESS_TOP - 0.135), "cotton", 0.07, 4, 12),
+        box((1.66, 2.02, 0.24), (0, -0.03, 0.22), "cotton", 0.02, 2, 10),
+    ]
 
 
 @lru_cache(maxsize=1)
@@ -107,24 +109,29 @@ def inflated(width: float, depth: float, seed: int) -> tuple[Array, tuple[tuple[
     q = verts[:, :2] / (np.array([width, depth]) / 2)
     verts[:, :2] *= 1 + 0.10 * (1 - q[:, ::-1] ** 2) - 0.075 * (np.abs(q[:, :1] * q[:, 1:]) ** 3)
     verts[:, 2] += 0.004 * noise(verts, 9.0, seed)
-    verts[len(one.verts):, 2] -= 0.012
+    verts[len(one.verts) :, 2] -= 0.012
     verts[inner, 2] += 0.012
     faces = list(one.faces) + [tuple(int(index[i]) for i in f[::-1]) for f in one.faces]
-    settled = simulate(Part(verts, faces, "pillowcase"), [], 26, pressure=1.6, gravity=0.0, bending=0.3,
-                       stiffness=14.0, shrink=-0.03)
+    settled = simulate(
+        Part(verts, faces, "pillowcase"), [], 26, pressure=1.6, gravity=0.0, bending=0.3, stiffness=14.0, shrink=-0.03
+    )
     return settled, tuple(faces)
 
 
-def pillow(size: tuple[float, float, float], seed: int = 1, material: str = "pillowcase", lean: float = 13.0) -> list[Part]:
+def pillow(
+    size: tuple[float, float, float], seed: int = 1, material: str = "pillowcase", lean: float = 13.0
+) -> list[Part]:
     """A sleeping pillow leaning a little against the headboard."""
     verts, faces = inflated(size[0] + 0.06, size[1] + 0.06, seed)
     part = Part(verts.copy(), [tuple(f) for f in faces], material, name="pillow")
     low, high = part.verts.min(0), part.verts.max(0)
     part.verts = (part.verts - (low + high) / 2) * np.array(
-        [size[0] / (high - low)[0], size[1] / (high - low)[1], 0.15 / (high - low)[2]])
+        [size[0] / (high - low)[0], size[1] / (high - low)[1], 0.15 / (high - low)[2]]
+    )
     # A dent where a head has been.
-    part.verts[:, 2] -= 0.012 * np.exp(-((part.verts[:, 0] / 0.16) ** 2 + (part.verts[:, 1] / 0.12) ** 2)) * (
-        part.verts[:, 2] > 0)
+    part.verts[:, 2] -= (
+        0.012 * np.exp(-((part.verts[:, 0] / 0.16) ** 2 + (part.verts[:, 1] / 0.12) ** 2)) * (part.verts[:, 2] > 0)
+    )
     return fit([part.turned(lean, "x")], size, 0.35)
 
 
@@ -152,8 +159,9 @@ def rug(size: tuple[float, float, float]) -> list[Part]:
     width, depth, height = size
     part = sheet(width, depth, 90, 100, "rug")
     lift = 0.0025 * (1 + noise(part.verts, 5.0, 4, 2))
-    rim = np.minimum(np.minimum(part.uv[:, 0], 1 - part.uv[:, 0]) * width,
-                     np.minimum(part.uv[:, 1], 1 - part.uv[:, 1]) * depth)
+    rim = np.minimum(
+        np.minimum(part.uv[:, 0], 1 - part.uv[:, 0]) * width, np.minimum(part.uv[:, 1], 1 - part.uv[:, 1]) * depth
+    )
     part.verts[:, 2] = height - 0.006 + lift - 0.006 * np.exp(-rim / 0.006)
     part.name = "pile"
     return fit([part, box((width, depth, 0.006), (0, 0, 0.003), "rug_side", 0.003, name="backing")], size, 0.3)

@@ -42,18 +42,55 @@ def scene_truth(roots: dict[str, bpy.types.Object], camera: bpy.types.Object, im
     corners = [(-x, -y), (x, -y), (x, y), (-x, y)]
     names = ("wall_south", "wall_east", "wall_north", "wall_west")
     architecture: list[dict[str, Any]] = [
-        {"id": name, "kind": "wall", "start": list(corners[i]), "end": list(corners[(i + 1) % 4]), "height": h, "sill": 0.0,
-         "wall": None} for i, name in enumerate(names)]
-    architecture += [{"id": o.id, "kind": o.kind, "start": list(o.start), "end": list(o.end), "height": o.height,
-                      "sill": o.sill, "wall": o.wall} for o in (DOOR, WINDOW)]
+        {
+            "id": name,
+            "kind": "wall",
+            "start": list(corners[i]),
+            "end": list(corners[(i + 1) % 4]),
+            "height": h,
+            "sill": 0.0,
+            "wall": None,
+        }
+        for i, name in enumerate(names)
+    ]
+    architecture += [
+        {
+            "id": o.id,
+            "kind": o.kind,
+            "start": list(o.start),
+            "end": list(o.end),
+            "height": o.height,
+            "sill": o.sill,
+            "wall": o.wall,
+        }
+        for o in (DOOR, WINDOW)
+    ]
     objects = []
     for item in ITEMS:
         centre, size = box_of(item, *local_bounds(roots[item.id]))
-        objects.append({"id": item.id, "category": item.category, "label": item.label, "centre": rounded(centre),
-                        "size": rounded(size), "yaw": item.yaw, "placement": item.placement, "parent": item.parent,
-                        "salience": item.salience})
-    return {"format": "code-as-room/scene/1", "image": image,
-            "room": {"size": list(ROOM_SIZE), "floor": [list(c) for c in corners]},
-            "camera": {"kind": "perspective", "matrix": rounded(np.array(camera.matrix_world).ravel(), 6),
-                       "fov_y": round(camera_fov_y(), 6), "image_size": list(IMAGE_SIZE)},
-            "architecture": architecture, "objects": objects}
+        objects.append(
+            {
+                "id": item.id,
+                "category": item.category,
+                "label": item.label,
+                "centre": rounded(centre),
+                "size": rounded(size),
+                "yaw": item.yaw,
+                "placement": item.placement,
+                "parent": item.parent,
+                "salience": item.salience,
+            }
+        )
+    return {
+        "format": "code-as-room/scene/1",
+        "image": image,
+        "room": {"size": list(ROOM_SIZE), "floor": [list(c) for c in corners]},
+        "camera": {
+            "kind": "perspective",
+            "matrix": rounded(np.array(camera.matrix_world).ravel(), 6),
+            "fov_y": round(camera_fov_y(), 6),
+            "image_size": list(IMAGE_SIZE),
+        },
+        "architecture": architecture,
+        "objects": objects,
+    }

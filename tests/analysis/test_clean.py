@@ -29,12 +29,20 @@ def thing(identifier: str, **changes: Any) -> dict[str, Any]:
 
 
 def reply(*objects: dict[str, Any], **changes: Any) -> AnalysisReply:
-    data = {"view": "perspective", "room_width_m": 4, "room_depth_m": 4, "floor_polygon": SQUARE, "objects": list(objects)}
+    data = {
+        "view": "perspective",
+        "room_width_m": 4,
+        "room_depth_m": 4,
+        "floor_polygon": SQUARE,
+        "objects": list(objects),
+    }
     return AnalysisReply.model_validate({**data, **changes})
 
 
 def test_an_inside_out_box_is_put_in_order_and_reported() -> None:
-    found = clean_analysis(reply(thing("a", box={"x_min": 400, "y_min": 400, "x_max": 300, "y_max": 300})), (1000, 1000))
+    found = clean_analysis(
+        reply(thing("a", box={"x_min": 400, "y_min": 400, "x_max": 300, "y_max": 300})), (1000, 1000)
+    )
     assert found.objects[0].box == ImageBox(x_min=300, y_min=300, x_max=400, y_max=400)
     assert any("inside out" in f.message for f in found.findings)
 
@@ -128,7 +136,7 @@ def test_second_look_corrects_and_takes_back() -> None:
     merged = merge_second_look(first, SecondLookReply.model_validate({"corrections": fixes}), [None])
     [item] = merged.objects
     assert item.box == ImageBox(**box) and item.yaw == 270
-    assert any("zz" == f.about for f in merged.findings)
+    assert any(f.about == "zz" for f in merged.findings)
 
 
 def test_a_box_of_the_whole_picture_stays() -> None:

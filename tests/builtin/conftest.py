@@ -114,8 +114,19 @@ class Painter:
             base[seam] *= 0.93
         return Image.fromarray(np.clip(base, 0, 255).astype(np.uint8))
 
-    def thing(self, name: str, x: float, y: float, w: float, d: float, colour: tuple[int, int, int],
-              height: float = 0.3, turn: float = 0.0, round_: bool = False, record: bool = True) -> None:
+    def thing(
+        self,
+        name: str,
+        x: float,
+        y: float,
+        w: float,
+        d: float,
+        colour: tuple[int, int, int],
+        height: float = 0.3,
+        turn: float = 0.0,
+        round_: bool = False,
+        record: bool = True,
+    ) -> None:
         """A box or cylinder with a soft shadow and, in perspective, visible sides. `height` 1 reaches the wall tops."""
         angle = np.radians(turn)
         c, s = np.cos(angle), np.sin(angle)
@@ -144,8 +155,9 @@ class Painter:
         soft = mask.filter(ImageFilter.GaussianBlur(0.06 * self.px))
         self.image = Image.composite(Image.new("RGB", self.size, (0, 0, 0)), self.image, soft.point(lambda v: v * 0.8))
 
-    def bed(self, x: float, y: float, w: float, d: float, linen: tuple[int, int, int],
-            blanket: tuple[int, int, int]) -> None:
+    def bed(
+        self, x: float, y: float, w: float, d: float, linen: tuple[int, int, int], blanket: tuple[int, int, int]
+    ) -> None:
         """A bed with its head at the top of the picture: linen, two pillows, a blanket over the lower part."""
         self.thing("bed", x, y, w, d, linen, 0.2)
         light = tuple(min(255, int(v * 1.04)) for v in linen)
@@ -159,8 +171,9 @@ class Painter:
             values = np.asarray(small, dtype=np.float64)
             values = values + self.rng.normal(0, self.style.noise, values.shape)
             small = Image.fromarray(np.clip(values, 0, 255).astype(np.uint8))
-        floor = [(px / self.size[0] * 1000, py / self.size[1] * 1000) for px, py in
-                 (self.at(x, y) for x, y in self.corners)]
+        floor = [
+            (px / self.size[0] * 1000, py / self.size[1] * 1000) for px, py in (self.at(x, y) for x, y in self.corners)
+        ]
         return Painted(small, floor, dict(self.boxes))
 
 
@@ -171,7 +184,9 @@ def paint_bedroom(style: Style = Style(), seed: int = 1, long_side: int = 700) -
     left = -0.9 if style.notch else -0.3
     painter.thing("rug", left, -0.25, 2.6, 1.5, (150, 160, 140), 0.0)
     painter.bed(left, -0.83, 1.6, 2.05, (238, 236, 232), (70, 100, 140))
-    painter.thing("nightstand_left", left - 1.08 if not style.notch else left + 1.08, -1.68, 0.45, 0.4, (110, 75, 50), 0.2)
+    painter.thing(
+        "nightstand_left", left - 1.08 if not style.notch else left + 1.08, -1.68, 0.45, 0.4, (110, 75, 50), 0.2
+    )
     if not style.notch:
         painter.thing("nightstand_right", left + 1.08, -1.68, 0.45, 0.4, (110, 75, 50), 0.2)
     painter.thing("wardrobe", 1.78, 0.25 + down, 0.6, 1.6, (235, 232, 228), 0.55)
@@ -225,6 +240,7 @@ class Match:
 
 def compare(painted: Painted, reply: AnalysisReply) -> Match:
     """Match by IoU; the outline's error is the worst corner's distance to its nearest found corner, 0-1000."""
+
     def box_of(item: Any) -> Box:
         return item.box.x_min, item.box.y_min, item.box.x_max, item.box.y_max
 

@@ -143,8 +143,11 @@ def _line_plan() -> tuple[Image.Image, dict[str, tuple[float, float, float, floa
     draw.rectangle([75, 75, 825, 725], fill=255)
     draw.rectangle([300, 50, 480, 75], fill=255, outline=0)  # window
     draw.rectangle([600, 725, 770, 750], fill=255)  # door gap
-    boxes = {"bed": (90.0, 78.0, 400.0, 470.0), "wardrobe": (700.0, 200.0, 822.0, 520.0),
-             "table": (420.0, 560.0, 560.0, 690.0)}
+    boxes = {
+        "bed": (90.0, 78.0, 400.0, 470.0),
+        "wardrobe": (700.0, 200.0, 822.0, 520.0),
+        "table": (420.0, 560.0, 560.0, 690.0),
+    }
     for x0, y0, x1, y1 in boxes.values():
         draw.rectangle([x0, y0, x1, y1], outline=0, width=2)
     draw.rectangle([120, 100, 230, 170], outline=0, width=2)
@@ -168,8 +171,12 @@ def test_line_plan_with_door_and_window(studio: Any) -> None:
 
 
 @settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(width=st.integers(1, 90), height=st.integers(1, 90), seed=st.integers(0, 10**6),
-       kind=st.sampled_from(["noise", "flat", "stripes", "blocks", "blobs"]))
+@given(
+    width=st.integers(1, 90),
+    height=st.integers(1, 90),
+    seed=st.integers(0, 10**6),
+    kind=st.sampled_from(["noise", "flat", "stripes", "blocks", "blobs"]),
+)
 def test_any_picture_gives_a_valid_answer(studio: Any, width: int, height: int, seed: int, kind: str) -> None:
     rng = np.random.default_rng(seed)
     if kind == "noise":
@@ -238,10 +245,15 @@ def test_cancel_while_at_work(studio: Any) -> None:
         BuiltinClient().answer(prompt, stop, lambda text: stop.set())
 
 
-@pytest.mark.parametrize(("key", "reply"), [
-    ("01_second_look", SecondLookReply), ("02_graph", GraphReply), ("03_critique/2", CritiqueReply),
-    ("04_auxiliary", AuxiliaryReply),
-])
+@pytest.mark.parametrize(
+    ("key", "reply"),
+    [
+        ("01_second_look", SecondLookReply),
+        ("02_graph", GraphReply),
+        ("03_critique/2", CritiqueReply),
+        ("04_auxiliary", AuxiliaryReply),
+    ],
+)
 def test_other_requests_get_an_empty_valid_answer(key: str, reply: Any) -> None:
     prompt = Prompt("s", key, "", (), reply.__name__, strict_schema(reply), "")
     answer = reply.model_validate(json.loads(BuiltinClient().answer(prompt, threading.Event()).text))

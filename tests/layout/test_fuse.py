@@ -41,7 +41,11 @@ def test_fused_is_better_than_metres_and_than_boxes(analysis: SceneAnalysis, cam
             scores.append(
                 [
                     footprint_iou(outline, rectangle_corners(centre, size, true.yaw))
-                    for centre, size in ((fused.centre, fused.size), (seen.centre, seen.size), (lifted.centre, lifted.size))
+                    for centre, size in (
+                        (fused.centre, fused.size),
+                        (seen.centre, seen.size),
+                        (lifted.centre, lifted.size),
+                    )
                 ]
             )
     fused_mean, metres_mean, boxes_mean = np.mean(scores, axis=0)

@@ -66,7 +66,12 @@ def test_invalid_edges_are_reported_and_inverses_added_once() -> None:
         return GraphEdge(source=source, relation=relation, target=target, origin="model")
 
     on = [GraphEdge(source="lamp", relation="on", target="table", origin="geometry")]
-    said = [edge("table", "on", "lamp"), edge("lamp", "near", "ghost"), edge("lamp", "loves", "table"), edge("x", "on", "x")]
+    said = [
+        edge("table", "on", "lamp"),
+        edge("lamp", "near", "ghost"),
+        edge("lamp", "loves", "table"),
+        edge("x", "on", "x"),
+    ]
     kept, findings = valid_edges([*on, *said, *on], {"lamp", "table", "x"}, on)
     assert kept == on and len(findings) == 4
     both = with_inverses(kept)

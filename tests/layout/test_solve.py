@@ -15,12 +15,16 @@ L_SHAPE = [(-3.0, -2.0), (3.0, -2.0), (3.0, 0.5), (0.5, 0.5), (0.5, 2.0), (-3.0,
 NONE: frozenset[frozenset[str]] = frozenset()
 
 
-def proxy(identifier: str, x: float, y: float, w: float = 0.8, d: float = 0.6, yaw: float = 0.0, h: float = 0.8) -> ProxyLine:
+def proxy(
+    identifier: str, x: float, y: float, w: float = 0.8, d: float = 0.6, yaw: float = 0.0, h: float = 0.8
+) -> ProxyLine:
     return ProxyLine(id=identifier, category="thing", centre=(x, y, h / 2), size=(w, d, h), yaw=yaw)
 
 
 def layout(*proxies: ProxyLine) -> Layout:
-    return Layout(room=RoomLine(size=(6, 4, 2.6), floor=L_SHAPE), walls=outer_walls(L_SHAPE, 2.6), proxies=list(proxies))
+    return Layout(
+        room=RoomLine(size=(6, 4, 2.6), floor=L_SHAPE), walls=outer_walls(L_SHAPE, 2.6), proxies=list(proxies)
+    )
 
 
 def test_random_crowds_end_inside_and_apart() -> None:

@@ -170,7 +170,12 @@ def exchange_threads() -> int:
 @pytest.fixture
 def a_prompt() -> Prompt:
     """A small prompt with one picture and a schema."""
-    schema = {"type": "object", "properties": {"a": {"type": "number"}}, "required": ["a"], "additionalProperties": False}
+    schema = {
+        "type": "object",
+        "properties": {"a": {"type": "number"}},
+        "required": ["a"],
+        "additionalProperties": False,
+    }
     return Prompt("s01", "01_test", "What is a?", (b"\x89PNG fake",), "Answer", schema, "0" * 64)
 
 

@@ -75,6 +75,7 @@ def test_a_reset_at_any_byte_is_an_error_or_a_whole_reply(peer, a_prompt, wire, 
         whole = b"HTTP/1.1 200 OK\r\nContent-Type: application/json\r\nContent-Length: %d\r\n\r\n" % len(body) + body
     client = make(peer.url)
     for end in sorted(random.Random(5).sample(range(len(whole)), 40)) + [len(whole)]:
+
         def script(received, end=end):
             received.send(whole[:end])
             if end % 2:
@@ -105,10 +106,10 @@ def test_a_reset_at_any_byte_is_an_error_or_a_whole_reply(peer, a_prompt, wire, 
         b"HTTP/1.1 200 OK\r\nContent-Type: text/html\r\nContent-Length: 20\r\n\r\n<html>hello</html>  ",
         b"HTTP/1.1 200 OK\r\nContent-Length: 5\r\n\r\nhello",
         b"HTTP/1.1 200 OK\r\nContent-Length: 2\r\n\r\n[]",
-        b"HTTP/1.1 200 OK\r\nContent-Length: 14\r\n\r\n{\"choices\": 3}",
+        b'HTTP/1.1 200 OK\r\nContent-Length: 14\r\n\r\n{"choices": 3}',
         b"HTTP/1.1 200 OK\r\nContent-Length: 4\r\n\r\nnull",
-        b"HTTP/1.1 200 OK\r\nContent-Type: text/event-stream\r\n\r\ndata: {\"choi\n\n",
-        b"HTTP/1.1 200 OK\r\nContent-Type: text/event-stream\r\n\r\ndata: 7\n\ndata: {\"error\": \"no\"}\n\n",
+        b'HTTP/1.1 200 OK\r\nContent-Type: text/event-stream\r\n\r\ndata: {"choi\n\n',
+        b'HTTP/1.1 200 OK\r\nContent-Type: text/event-stream\r\n\r\ndata: 7\n\ndata: {"error": "no"}\n\n',
         b"HTTP/1.1 204 No Content\r\n\r\n",
         b"HTTP/1.1 302 Found\r\n\r\n",
         b"HTTP/1.1 302 Found\r\nLocation: http://[::1\r\n\r\n",

@@ -146,7 +146,9 @@ def test_the_services_sentence_is_found_in_any_shape(body, expected):
     assert expected is None or sentence == expected
 
 
-@pytest.mark.parametrize("text", [KEY, f"Bearer {KEY}", "sk-test-************cdef", "bearer abc.def", "sk-otherkey12345678"])
+@pytest.mark.parametrize(
+    "text", [KEY, f"Bearer {KEY}", "sk-test-************cdef", "bearer abc.def", "sk-otherkey12345678"]
+)
 def test_keys_are_redacted_in_every_shape(text):
     told = redact(f"Incorrect API key provided: {text}, see the site", KEY)
     assert text not in told and "cdef" not in told and told.endswith("see the site")

@@ -21,7 +21,9 @@ pytestmark = pytest.mark.usefixtures("no_threads_left")
 
 
 def make(url, limits=None, retries=None):
-    return OpenAIStyleClient(url, "m", "sk-test-0123456789abcdef", limits or Limits(total=20.0), retries or RetryPolicy(1))
+    return OpenAIStyleClient(
+        url, "m", "sk-test-0123456789abcdef", limits or Limits(total=20.0), retries or RetryPolicy(1)
+    )
 
 
 def stopped_after(client, prompt, seconds):

@@ -216,7 +216,9 @@ def test_an_empty_answer_a_refusal_and_a_filter_are_told(peer, ask, wire):
         ask()
 
 
-@pytest.mark.parametrize("url", ["", "localhost:1234", "ftp://x/v1", "http://", "http://user:pw@host/v1", "http://a b/", "http://h:99999/"])
+@pytest.mark.parametrize(
+    "url", ["", "localhost:1234", "ftp://x/v1", "http://", "http://user:pw@host/v1", "http://a b/", "http://h:99999/"]
+)
 def test_impossible_addresses_are_refused_without_repeating_secrets(url):
     with pytest.raises(ModelError) as caught:
         OpenAIStyleClient(url, "m")

@@ -147,8 +147,15 @@ def test_a_cut_answer_stays_a_cut_answer():
 
 
 odd = st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False) | st.text(max_size=6)
-odd_values = st.recursive(odd, lambda inner: st.lists(inner, max_size=4) | st.dictionaries(
-    st.sampled_from(["id", "kind", "size", "box", "things", "x", "y", "x_min", "YAW", "zz"]), inner, max_size=5))
+odd_values = st.recursive(
+    odd,
+    lambda inner: (
+        st.lists(inner, max_size=4)
+        | st.dictionaries(
+            st.sampled_from(["id", "kind", "size", "box", "things", "x", "y", "x_min", "YAW", "zz"]), inner, max_size=5
+        )
+    ),
+)
 
 
 @given(odd_values)

@@ -9,7 +9,18 @@ from code_as_room.pipeline.artifacts.layout import Layout, LayoutEdit
 from code_as_room.pipeline.models.schema import shape_text, strict_schema
 from pydantic import BaseModel, Field
 
-ALLOWED = {"type", "properties", "required", "additionalProperties", "items", "enum", "anyOf", "$ref", "$defs", "description"}
+ALLOWED = {
+    "type",
+    "properties",
+    "required",
+    "additionalProperties",
+    "items",
+    "enum",
+    "anyOf",
+    "$ref",
+    "$defs",
+    "description",
+}
 
 
 class Move(BaseModel):

@@ -15,7 +15,7 @@ READABLE = {
     '{"a": 1}': {"a": 1},
     '\ufeff {"a": 1}\n': {"a": 1},
     '```json\n{"a": 1}\n```': {"a": 1},
-    '```\n[1, 2]\n```': [1, 2],
+    "```\n[1, 2]\n```": [1, 2],
     'Here it is:\n```json\n{"a": {"b": 2}}\n```\nI hope {this} helps [1].': {"a": {"b": 2}},
     'The bed\'s [left] side. {"a": 1, "b": [2, 3]} Done.': {"a": 1, "b": [2, 3]},
     '<think>maybe {"a": 9, "b": 9, "c": 9}?</think>{"a": 1}': {"a": 1},
@@ -108,7 +108,9 @@ def test_the_allowed_depth_is_read():
     assert isinstance(value, list)
 
 
-@pytest.mark.parametrize("text", ["x" * (MAX_CHARACTERS + 1), "{" * 300_000, "{a}" * 50_000, "[1 " * 100_000, "/*" * 99_999])
+@pytest.mark.parametrize(
+    "text", ["x" * (MAX_CHARACTERS + 1), "{" * 300_000, "{a}" * 50_000, "[1 " * 100_000, "/*" * 99_999]
+)
 def test_hostile_texts_end_in_an_error(text):
     with pytest.raises(ReplyError):
         read_json(text)

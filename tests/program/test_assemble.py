@@ -97,7 +97,9 @@ def test_names_are_renamed_by_scope(tmp_path) -> None:
     assert names["one", "SIZE"] == "_SIZE" and names["two", "SIZE"] == "_two_SIZE"
     assert "_hidden = [_SIZE for i in range(_SIZE)]" in text
     assert "    size: int = _SIZE\n\n    def half(self, math=_math):\n        return _SIZE + math.pi" in text
-    assert "def shown(SIZE=_SIZE, thing=None):\n    return f'{SIZE} {_half()} {{SIZE}}', [half for half in (1,)]" in text
+    assert (
+        "def shown(SIZE=_SIZE, thing=None):\n    return f'{SIZE} {_half()} {{SIZE}}', [half for half in (1,)]" in text
+    )
     assert "return lambda SIZE: (SIZE, _Thing(size=_hidden))" in text
     assert "return _half() + _two_SIZE, shown()" in text
     bound, used = module_names(text)

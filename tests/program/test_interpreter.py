@@ -160,8 +160,8 @@ def test_what_is_just_within_the_limits_runs() -> None:
 
 
 def test_long_programs_of_simple_lines_are_fine() -> None:
-    lines = [f"p{i} = ({i}, {i * 0.5}, -{i})" for i in range(3000)]
-    table = "points = [\n" + ",\n".join(f"  (-{i}.5, {i} + 1, -2)" for i in range(3000)) + "]\n"
+    lines = [f"p{i} = ({i}, {i * 0.5}, -{i})" for i in range(2000)]
+    table = "points = [\n" + ",\n".join(f"  (-{i}.5, {i} + 1, -2)" for i in range(2000)) + "]\n"
     elifs = "if p1 == 0:\n    q = 0\n" + "".join(f"elif p1 == {i}:\n    q = {i}\n" for i in range(300))
     evaluate("\n".join(lines) + "\n" + table + elifs)
 

@@ -169,7 +169,7 @@ SAME = {
     "reversed_and_zip": "a = [list(reversed([1, 2])), list(zip('ab', range(5))), tuple(enumerate('ab', 5)), list(reversed(range(3)))]",
     "sum_start": "a = [sum([1, 2], 3), sum([[1], [2]], []), sum([0.1] * 10), sum(())]",
     "int_float": "a = [int('12'), int(-2.7), float('1.5'), float(3), int(True), bool([]), bool('x'), int(), str()]",
-    "is_none": "b = None\na = [b is None, b is not None, 0 is None]",
+    "is_none": "b = None\na = [b is None, b is not None, [] is None]",
     "membership": "a = [1.0 in [1], 'x' in ('y',), 3 in range(5), 2.5 in range(5), None in [None], (1, 2) in [(1, 2)], [1] not in [[1]]]",
     "comparisons_of_lists": "a = [[1, 2] < [1, 3], (1,) == (1.0,), [] == (), {'x': [1]} == {'x': [1]}, 'a' == 1, 1 != 1.0]",
     "unary": "a = [-True, +3.5, not 0, - -2, -(2 ** 2), not not 'x']",

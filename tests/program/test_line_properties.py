@@ -29,7 +29,9 @@ size = st.floats(0.001, 10_000)
 point2 = st.tuples(coordinate, coordinate)
 point3 = st.tuples(coordinate, coordinate, coordinate)
 sizes = st.tuples(size, size, size)
-names = st.text(min_size=1, max_size=12) | st.sampled_from(['a"b', "c\\n", "d\n", "e'", "\u2028", "#", "é", "\U0001f6cf"])
+names = st.text(min_size=1, max_size=12) | st.sampled_from(
+    ['a"b', "c\\n", "d\n", "e'", "\u2028", "#", "é", "\U0001f6cf"]
+)
 labels = st.text(max_size=40) | st.sampled_from(['say "hi"', "back\\slash", "two\nlines", "\x00\x7f\u202e", "x" * 200])
 
 

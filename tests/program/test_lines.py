@@ -54,7 +54,7 @@ def test_any_text_survives_as_a_literal(label: str) -> None:
 
 def test_numbers_are_rounded_to_a_tenth_of_a_millimetre() -> None:
     line = ProxyLine(id="a", category="b", centre=(0.123456, -0.00001, 1e-9), size=(1, 2.00004, 1 / 3), yaw=1e3)
-    assert 'centre=(0.1235, 0, 0), size=(1, 2, 0.3333), yaw=1000,' in print_line(line)
+    assert "centre=(0.1235, 0, 0), size=(1, 2, 0.3333), yaw=1000," in print_line(line)
 
 
 def test_whatever_is_not_a_layout_line_is_passed_over() -> None:

@@ -106,7 +106,7 @@ def test_an_added_object_comes_after_the_last_of_its_salience() -> None:
 def test_an_addition_does_not_fall_into_a_statement_that_shares_the_line() -> None:
     text = TEXT.replace("; width = 3", "; width = [\n    3,\n]")
     patched, _ = patch_text(text, [edit("add", "rug_1", category="rug", centre=(0, 0, 0), size=(2, 2, 0.02))])
-    assert "; width = [\n    3,\n]\nproxy(\"rug_1\"" in patched
+    assert '; width = [\n    3,\n]\nproxy("rug_1"' in patched
 
 
 UNUSABLE: dict[str, LayoutEdit] = {

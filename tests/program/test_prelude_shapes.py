@@ -47,7 +47,10 @@ CLOSED: dict[str, tuple[Shape, float | None]] = {
     "thinning tube": (profiles.tube([(0, 0, 0), (0, 0.5, 1), (1, 0, 3)], [0.2, 0.1, 0.05]), None),
     "closed tube": (profiles.tube(KNOT, 0.1, closed=True), None),
     "rail": (profiles.sweep([(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 0, 0), (4, 0, 0), (4, 4, 0)]), None),
-    "frame": (profiles.sweep([(0, 0), (0.1, 0), (0, 0.1)], [(0, 0, 0), (4, 0, 0), (4, 3, 0), (0, 3, 0)], closed=True), None),
+    "frame": (
+        profiles.sweep([(0, 0), (0.1, 0), (0, 0.1)], [(0, 0, 0), (4, 0, 0), (4, 3, 0), (0, 3, 0)], closed=True),
+        None,
+    ),
 }
 
 
@@ -95,7 +98,9 @@ positive = st.floats(0.01, 50)
 coordinate = st.floats(-50, 50)
 
 
-@given(st.tuples(positive, positive, positive), positive, st.tuples(coordinate, coordinate, coordinate), st.integers(1, 5))
+@given(
+    st.tuples(positive, positive, positive), positive, st.tuples(coordinate, coordinate, coordinate), st.integers(1, 5)
+)
 def test_a_rounded_box_fills_its_size_exactly(size, radius, at, segments) -> None:
     shape = solids.rounded_box(size, radius, at, segments)
     assert_closed(shape)

@@ -59,7 +59,9 @@ def project(camera: dict[str, Any], points: Points) -> Points:
     local = points @ to_camera[:3, :3].T + to_camera[:3, 3]
     width, height = camera["image_size"]
     focal = height / 2 / np.tan(camera["fov_y"] / 2)
-    return np.column_stack([width / 2 + focal * local[:, 0] / -local[:, 2], height / 2 - focal * local[:, 1] / -local[:, 2]])
+    return np.column_stack(
+        [width / 2 + focal * local[:, 0] / -local[:, 2], height / 2 - focal * local[:, 1] / -local[:, 2]]
+    )
 
 
 def test_document_is_complete(truth: dict[str, Any]) -> None:
@@ -136,8 +138,10 @@ def test_picture_shows_the_room_where_the_camera_says(truth: dict[str, Any]) -> 
         assert list(image.size) == truth["camera"]["image_size"]
         pixels = np.asarray(image.convert("RGB")).astype(float)
     w, d, h = truth["room"]["size"]
-    cut = project(truth["camera"], np.array([[w / 2 + 0.06, 0, h], [-w / 2 - 0.06, 0, h], [0, d / 2 + 0.06, h],
-                                             [0, -d / 2 - 0.06, h]]))
+    cut = project(
+        truth["camera"],
+        np.array([[w / 2 + 0.06, 0, h], [-w / 2 - 0.06, 0, h], [0, d / 2 + 0.06, h], [0, -d / 2 - 0.06, h]]),
+    )
     colours = np.array([pixels[int(y), int(x)] for x, y in cut])
     assert np.ptp(colours, axis=0).max() < 12
     paper = pixels[4, 4]

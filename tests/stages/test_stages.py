@@ -138,7 +138,9 @@ def test_hand_edits_win_over_the_critic(run: Run, answers: Any, scene: Any) -> N
     assert any(f.about == "chair" and "by hand" in f.message for f in refused)
 
 
-def test_the_critic_mends_a_wrong_box_and_the_best_round_is_kept(run: Run, answers: Any, analysis: SceneAnalysis) -> None:
+def test_the_critic_mends_a_wrong_box_and_the_best_round_is_kept(
+    run: Run, answers: Any, analysis: SceneAnalysis
+) -> None:
     bed = next(o for o in answers.by_key["01_analysis"]["objects"] if o["id"] == "bed")
     right = dict(bed["box"])
     bed["box"] = {k: v + (25 if k.startswith("y") else 0) for k, v in right.items()}
@@ -159,6 +161,17 @@ def test_the_critic_mends_a_wrong_box_and_the_best_round_is_kept(run: Run, answe
     true = next(o for o in analysis.objects if o.id == "bed").centre[1]
     assert abs(last.centre[1] - true) < abs(first.centre[1] - true) - 0.02
     assert parse_layout(program.text).proxy("bed") == last
+
+
+@pytest.mark.parametrize(("allowed", "asked"), [("0", 0), ("1", 1), ("3", 2)])
+def test_the_artist_limits_the_rounds(run: Run, answers: Any, allowed: str, asked: int) -> None:
+    box = next(o["box"] for o in answers.by_key["01_analysis"]["objects"] if o["id"] == "chair")
+    moved = {k: v + (12 if k.startswith("x") else 0) for k, v in box.items()}
+    edit = {"op": "move", "id": "chair", "box": moved}
+    answers.by_key["03_critique"] = lambda p: {"score": 50, "edits": [edit] if p.key.endswith("/0") else []}
+    run.memory.settings["iterations"] = allowed
+    run.run_all()
+    assert sum(p.key.startswith("03_critique") for p in answers.asked) == asked
 
 
 def test_nonsense_from_the_critic_changes_nothing(run: Run, answers: Any) -> None:

@@ -8,8 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .answer import answer_of
-from .categories import FALLBACK
 from .decode import WorkPicture
 from .depth import fit_floor, radial_excess
 from .furnish import Item, furnish, measured_scale, nest
@@ -89,7 +87,7 @@ def _reaches_floor(thing: Thing, inside: Bools) -> bool:
     return bool(inside[rows, columns].mean() > 0.1)
 
 
-def _plausible(things: list[Thing], frame: Frame, floor_colour: Floats) -> list[Thing]:
+def _plausible(things: list[Thing], frame: Frame, floor_colour: Floats | None) -> list[Thing]:
     """Leave out what is too small, too thin or too ragged to be a thing, and odd floor planks."""
     kept = []
     for thing in things:
@@ -97,7 +95,7 @@ def _plausible(things: list[Thing], frame: Frame, floor_colour: Floats) -> list[
         long, short = max(foot.length, foot.breadth), min(foot.length, foot.breadth)
         if short < 0.1 or long * short < 0.02 or long * short > 0.7 * frame.size[0] * frame.size[1]:
             continue
-        if long * short < 0.35 and min(long, short) < 0.35 and _is_plank(thing, floor_colour):
+        if floor_colour is not None and long * short < 0.35 and short < 0.35 and _is_plank(thing, floor_colour):
             continue
         if thing.fill < 0.3 and long * short < 1.5 or short < 0.16 and long / short > 3.5:
             continue
@@ -113,8 +111,9 @@ def _is_plank(thing: Thing, floor: Floats) -> bool:
     return float(np.linalg.norm(tint)) < 5
 
 
-def see(picture: WorkPicture, known_width: float | None = None,
-        progress: Callable[[str], None] | None = None) -> Analysis:
+def see(
+    picture: WorkPicture, known_width: float | None = None, progress: Callable[[str], None] | None = None
+) -> Analysis:
     """Analyse a picture.
 
     Args:
@@ -146,8 +145,8 @@ def see(picture: WorkPicture, known_width: float | None = None,
         things, openings = _split_walls(things, frame, inside, light)
     elif outline.found:
         openings = ring_gaps(lab, picture.ink, outline, frame)
-    things = _plausible(things, frame, areas.floor_colour)
-    nest(things, frame)
+    things = _plausible(things, frame, None if drawing else areas.floor_colour)
+    nest(things, frame, not drawing)
     doors = [o.along[1] - o.along[0] for o in openings if o.kind == "door"]
     if known_width is not None and known_width > 0:
         factor, said = known_width / max(frame.size[0], 1e-6), "The scale comes from the room's width as given."
@@ -156,8 +155,8 @@ def see(picture: WorkPicture, known_width: float | None = None,
     notes.append(said)
     frame = frame.rescaled(factor)
     openings = [_rescaled(o, factor) for o in openings]
-    things = _plausible(things, frame, areas.floor_colour)
-    nest(things, frame)
+    things = _plausible(things, frame, None if drawing else areas.floor_colour)
+    nest(things, frame, not drawing)
     return Analysis(view, outline, frame, furnish(things, frame), openings, notes)
 
 
@@ -165,6 +164,3 @@ def _rescaled(opening: Opening, factor: float) -> Opening:
     """An opening after the scale changed; heights on wall faces come from the assumed wall height and stay."""
     along = (opening.along[0] * factor, opening.along[1] * factor)
     return Opening(opening.kind, opening.wall, along, opening.sill, opening.height, opening.bounds)
-
-
-__all__ = ["FALLBACK", "Analysis", "answer_of", "see"]

@@ -17,8 +17,21 @@ if TYPE_CHECKING:
     from .analyse import Analysis
 
 _FACINGS = ("down", "down-right", "right", "up-right", "up", "up-left", "left", "down-left")
-_NO_FRONT = ("rug", "potted_plant", "round_table", "dining_table", "coffee_table", "side_table", "table_lamp", "pouf",
-             "stool", "floor_lamp", "decor", "table", "storage_box")
+_NO_FRONT = (
+    "rug",
+    "potted_plant",
+    "round_table",
+    "dining_table",
+    "coffee_table",
+    "side_table",
+    "table_lamp",
+    "pouf",
+    "stool",
+    "floor_lamp",
+    "decor",
+    "table",
+    "storage_box",
+)
 
 
 class _Units:
@@ -60,11 +73,16 @@ def _opening(opening: Opening, name: str, frame: Frame, units: _Units) -> dict[s
     along = (end - start) / max(float(np.linalg.norm(end - start)), 1e-9)
     a, b = start + along * opening.along[0], start + along * opening.along[1]
     return {
-        "id": name, "kind": opening.kind, "wall": _side(frame, opening.wall),
+        "id": name,
+        "kind": opening.kind,
+        "wall": _side(frame, opening.wall),
         "start": {"x_m": round(float(a[0]), 3), "y_m": round(float(a[1]), 3)},
         "end": {"x_m": round(float(b[0]), 3), "y_m": round(float(b[1]), 3)},
-        "height_m": round(opening.height, 2), "sill_m": round(opening.sill, 2), "thickness_m": 0.12,
-        "box": units.box(opening.bounds), "swing": "",
+        "height_m": round(opening.height, 2),
+        "sill_m": round(opening.sill, 2),
+        "thickness_m": 0.12,
+        "box": units.box(opening.bounds),
+        "swing": "",
     }
 
 
@@ -75,14 +93,25 @@ def _picture(opening: Opening, name: str, frame: Frame, units: _Units) -> dict[s
     middle = start + along * (opening.along[0] + opening.along[1]) / 2 + inward * 0.02
     yaw = float(np.degrees(np.arctan2(inward[0], -inward[1])))
     return {
-        "id": name, "category": "picture", "label": "picture", "placement": "wall",
-        "parent": _side(frame, opening.wall), "salience": "minor", "zone": None, "shape": "box",
+        "id": name,
+        "category": "picture",
+        "label": "picture",
+        "placement": "wall",
+        "parent": _side(frame, opening.wall),
+        "salience": "minor",
+        "zone": None,
+        "shape": "box",
         "box": units.box(opening.bounds),
         "centre_m": {"x_m": round(float(middle[0]), 3), "y_m": round(float(middle[1]), 3)},
         "base_m": round(opening.sill, 3),
-        "size_m": {"width": round(opening.along[1] - opening.along[0], 3), "depth": 0.03,
-                   "height": round(opening.height, 3)},
-        "facing": _facing(yaw), "yaw_deg": round(yaw, 1), "confidence": 0.3,
+        "size_m": {
+            "width": round(opening.along[1] - opening.along[0], 3),
+            "depth": 0.03,
+            "height": round(opening.height, 3),
+        },
+        "facing": _facing(yaw),
+        "yaw_deg": round(yaw, 1),
+        "confidence": 0.3,
     }
 
 
@@ -91,14 +120,20 @@ def _object(item: Item, name: str, parent: str | None, units: _Units) -> dict[st
     round_shape = item.thing.roundness < 0.86 and item.thing.fill > 0.6 and item.thing.box.angle == 0.0
     bounds = item.thing.hull.min(0).tolist() + item.thing.hull.max(0).tolist()
     return {
-        "id": name, "category": item.category, "label": item.category.replace("_", " "),
-        "placement": "surface" if parent is not None else "floor", "parent": parent,
-        "salience": "minor" if item.minor else "major", "zone": None, "shape": "round" if round_shape else "box",
+        "id": name,
+        "category": item.category,
+        "label": item.category.replace("_", " "),
+        "placement": "surface" if parent is not None else "floor",
+        "parent": parent,
+        "salience": "minor" if item.minor else "major",
+        "zone": None,
+        "shape": "round" if round_shape else "box",
         "box": units.box((bounds[0], bounds[1], bounds[2], bounds[3])),
         "centre_m": {"x_m": round(item.foot.x, 3), "y_m": round(item.foot.y, 3)},
         "base_m": round(item.base, 3),
         "size_m": {"width": round(item.width, 3), "depth": round(item.depth, 3), "height": round(item.height, 3)},
-        "facing": _facing(item.yaw) if front else "none", "yaw_deg": round(item.yaw, 1),
+        "facing": _facing(item.yaw) if front else "none",
+        "yaw_deg": round(item.yaw, 1),
         "confidence": round(item.confidence, 2),
     }
 
@@ -119,14 +154,18 @@ def answer_of(seen: Analysis, shape: tuple[int, int]) -> dict[str, Any]:
         return f"{category}_{counts[category]}"
 
     names = [name(item.category) for item in seen.items]
-    objects = [_object(item, names[i], names[item.parent] if item.parent >= 0 else None, units)
-               for i, item in enumerate(seen.items)]
+    objects = [
+        _object(item, names[i], names[item.parent] if item.parent >= 0 else None, units)
+        for i, item in enumerate(seen.items)
+    ]
     objects += [_picture(o, name("picture"), frame, units) for o in seen.openings if o.kind == "picture"]
     width, depth = frame.size
     return {
         "view": seen.view,
         "room_type": room_type({item.category for item in seen.items}),
-        "room_width_m": round(width, 3), "room_depth_m": round(depth, 3), "wall_height_m": frame.height,
+        "room_width_m": round(width, 3),
+        "room_depth_m": round(depth, 3),
+        "wall_height_m": frame.height,
         "floor_polygon": units.points(frame.floor[order]),
         "wall_top_polygon": units.points(frame.top[order]) if seen.view == "perspective" else None,
         "zones": [],

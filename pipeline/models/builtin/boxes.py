@@ -40,8 +40,9 @@ class OrientedBox:
         along = np.array([np.cos(turn), np.sin(turn)]) * self.length / 2
         across = np.array([-np.sin(turn), np.cos(turn)]) * self.breadth / 2
         middle = np.array(self.centre)
-        return np.array([middle - along - across, middle + along - across, middle + along + across,
-                         middle - along + across])
+        return np.array(
+            [middle - along - across, middle + along - across, middle + along + across, middle - along + across]
+        )
 
     def bounds(self) -> tuple[float, float, float, float]:
         """Axis-aligned bounds x_min, y_min, x_max, y_max in pixels."""
@@ -56,7 +57,8 @@ class OrientedBox:
         along = offset @ np.array([np.cos(turn), np.sin(turn)])
         across = offset @ np.array([-np.sin(turn), np.cos(turn)])
         inside: NDArray[np.bool_] = (np.abs(along) <= self.length / 2 + slack) & (
-            np.abs(across) <= self.breadth / 2 + slack)
+            np.abs(across) <= self.breadth / 2 + slack
+        )
         return inside
 
 

@@ -141,8 +141,9 @@ def heights() -> tuple[float, ...]:
     return tuple(sorted({kind.height for kind in KINDS}))
 
 
-def small_category(parent: str, colour: Floats, parent_colour: Floats, foot: Footprint, roundness: float) -> tuple[
-        str, float]:
+def small_category(
+    parent: str, colour: Floats, parent_colour: Floats, foot: Footprint, roundness: float
+) -> tuple[str, float]:
     """Category and height in metres of something on top of a piece of furniture."""
     long, short = max(foot.length, foot.breadth), min(foot.length, foot.breadth)
     if is_green(colour):

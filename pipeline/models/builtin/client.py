@@ -11,7 +11,8 @@ from collections.abc import Callable
 
 from ...errors import Cancelled, ModelError, RoomError
 from ..base import Prompt, Reply
-from .analyse import answer_of, see
+from .analyse import see
+from .answer import answer_of
 from .decode import decode
 from .empty import empty_value
 
@@ -24,9 +25,7 @@ class BuiltinClient:
     name = "builtin"
     describes = "No model: the built-in picture analysis, which finds shapes and sizes and guesses what things are."
 
-    def answer(
-        self, prompt: Prompt, cancel: threading.Event, progress: Callable[[str], None] | None = None
-    ) -> Reply:
+    def answer(self, prompt: Prompt, cancel: threading.Event, progress: Callable[[str], None] | None = None) -> Reply:
         """Answer one prompt; see `ModelClient.answer`.
 
         Raises:

@@ -39,8 +39,9 @@ def rgb_to_lab(rgb: Floats) -> Floats:
     """Convert sRGB 0..255 to CIE L*a*b* under D65 (IEC 61966-2-1 and CIE 15). Any leading shape, last axis 3."""
     unit = np.clip(rgb / 255.0, 0.0, 1.0)
     linear = np.where(unit <= 0.04045, unit / 12.92, ((unit + 0.055) / 1.055) ** 2.4)
-    to_xyz = np.array([[0.4124564, 0.3575761, 0.1804375], [0.2126729, 0.7151522, 0.0721750],
-                       [0.0193339, 0.1191920, 0.9503041]])
+    to_xyz = np.array(
+        [[0.4124564, 0.3575761, 0.1804375], [0.2126729, 0.7151522, 0.0721750], [0.0193339, 0.1191920, 0.9503041]]
+    )
     xyz = linear @ to_xyz.T / np.array([0.95047, 1.0, 1.08883])
     f = np.where(xyz > 216 / 24389, np.cbrt(xyz), (24389 / 27 * xyz + 16) / 116)
     lab = np.stack([116 * f[..., 1] - 16, 500 * (f[..., 0] - f[..., 1]), 200 * (f[..., 1] - f[..., 2])], axis=-1)
@@ -78,9 +79,7 @@ def decode(data: bytes, long_side: int = LONG_SIDE) -> WorkPicture:
             if image.getexif().get(0x0112) in (5, 6, 7, 8):
                 size = (size[1], size[0])
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
-        raise PictureError(
-            "The picture cannot be read.", "Save it as PNG or JPEG and load it again."
-        ) from error
+        raise PictureError("The picture cannot be read.", "Save it as PNG or JPEG and load it again.") from error
     scale = long_side / max(flat.size)
     dark = flat
     if scale < 1:

@@ -184,7 +184,9 @@ def radial_excess(lab: Floats, top: Polygon, fit: FloorFit) -> float:
             if total < 8:
                 shares.append(0.0)
                 continue
-            hits = [float(weight[part & (np.abs(np.cos(turned + offset)) < 0.12)].sum()) / total
-                    for offset in (0.0, -0.4, 0.4)]
+            hits = [
+                float(weight[part & (np.abs(np.cos(turned + offset)) < 0.12)].sum()) / total
+                for offset in (0.0, -0.4, 0.4)
+            ]
             shares.append(hits[0] - 0.5 * (hits[1] + hits[2]))
     return float(np.mean(sorted(shares)[1:3]))

@@ -34,6 +34,9 @@ def empty_value(schema: Mapping[str, Any], definitions: Mapping[str, Any] | None
         return [empty_value(schema.get("items", {}), known) for _ in range(int(schema.get("minItems", 0)))]
     if kind == "object" or "properties" in schema:
         properties = schema.get("properties", {})
-        return {name: empty_value(properties[name], known) for name in schema.get("required", properties)
-                if name in properties}
+        return {
+            name: empty_value(properties[name], known)
+            for name in schema.get("required", properties)
+            if name in properties
+        }
     return _SCALARS.get(str(kind))

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .boxes import OrientedBox, convex_hull
-from .categories import FALLBACK, RUG, Kind, Looks, guess, heights, is_green, small_category
+from .boxes import OrientedBox
+from .categories import RUG, Looks, guess, heights, is_green, small_category
 from .grouping import Thing
 from .place import Footprint, Frame, WallContact, contacts
 
@@ -63,18 +63,22 @@ def _shares(things: list[Thing]) -> NDArray[np.float64]:
     return shares
 
 
-def _is_pattern(inner: Thing, rug: Thing) -> bool:
+def _is_pattern(inner: Thing, rug: Thing, coloured: bool) -> bool:
     """A field or border of the rug itself: of its colour, or a ragged piece around its centre."""
-    alike = float(np.linalg.norm((inner.colour - rug.colour) / (1.6, 1.0, 1.0)))
+    alike = float(np.linalg.norm((inner.colour - rug.colour) / (1.6, 1.0, 1.0))) if coloured else 10.0
     apart = float(np.linalg.norm(np.array(inner.box.centre) - np.array(rug.box.centre)))
-    return alike < 7 or inner.fill < 0.45 or (
-        inner.box.area > 0.35 * rug.box.area and apart < 0.1 * min(rug.box.length, rug.box.breadth) and alike < 25)
+    return (
+        alike < 7
+        or inner.fill < 0.45
+        or (inner.box.area > 0.35 * rug.box.area and apart < 0.1 * min(rug.box.length, rug.box.breadth) and alike < 25)
+    )
 
 
-def nest(things: list[Thing], frame: Frame) -> None:
+def nest(things: list[Thing], frame: Frame, coloured: bool = True) -> None:
     """Set `flat` and `inside`: rugs are found, and everything on something else gets to know it.
 
-    Takes what is only a rug's pattern out of the list. The list is ordered by size, the largest first.
+    Takes what is only a rug's pattern, or a ragged rest of something else, out of the list. The list is ordered by size, the largest first.
+    `coloured` is False for line drawings.
     """
     square = frame.scale**2
     shares = _shares(things)
@@ -82,14 +86,19 @@ def nest(things: list[Thing], frame: Frame) -> None:
         outer.flat = _is_rug(j, things, shares, frame, square)
     for j in [j for j, outer in enumerate(things) if outer.flat]:
         for i, inner in enumerate(things):
-            if i != j and shares[i, j] > 0.8 and _is_pattern(inner, things[j]):
+            if i != j and shares[i, j] > 0.8 and _is_pattern(inner, things[j], coloured):
                 inner.flat, inner.inside = False, PATTERN
                 things[j].size += inner.size
-    things[:] = [thing for thing in things if thing.inside != PATTERN]
+    ragged = [i for i, thing in enumerate(things) if not thing.flat and thing.fill < 0.55 and any(
+        shares[i, j] > 0.5 and other.fill > thing.fill and not other.flat for j, other in enumerate(things))]
+    things[:] = [thing for i, thing in enumerate(things) if thing.inside != PATTERN and i not in ragged]
     shares = _shares(things)
     for i, inner in enumerate(things):
-        holders = [j for j, outer in enumerate(things)
-                   if j != i and not inner.flat and shares[i, j] > 0.8 and outer.box.area > 1.4 * inner.box.area]
+        holders = [
+            j
+            for j, outer in enumerate(things)
+            if j != i and not inner.flat and shares[i, j] > 0.8 and outer.box.area > 1.4 * inner.box.area
+        ]
         solid = [j for j in holders if not things[j].flat]
         inner.inside = min(solid, key=lambda j: things[j].box.area) if solid else -1
 
@@ -99,6 +108,8 @@ def _is_rug(j: int, things: list[Thing], shares: NDArray[np.float64], frame: Fra
     outer = things[j]
     area = outer.box.area * square
     if area < 0.6 or min(outer.box.length, outer.box.breadth) * frame.scale < 0.45 or is_green(outer.colour):
+        return False
+    if frame.leaning_height(outer.box) is not None:
         return False
     hidden = 0.0
     for i, other in enumerate(things):
@@ -112,8 +123,14 @@ def _is_rug(j: int, things: list[Thing], shares: NDArray[np.float64], frame: Fra
     over = any(0.08 < shares[j, i] < 0.8 and outer.fill > other.fill for i, other in enumerate(things) if i != j)
     if not over and all(c.gap > 0.4 for c in near) and area > 1.9 and short > 1.15:
         return True  # too large for a table, and beds stand at walls
-    on_top = [i for i in range(len(things)) if i != j and shares[i, j] > 0.8 and things[i].box.area * square > 0.14
-              and min(things[i].box.length, things[i].box.breadth) * frame.scale > 0.28]
+    on_top = [
+        i
+        for i in range(len(things))
+        if i != j
+        and shares[i, j] > 0.8
+        and things[i].box.area * square > 0.14
+        and min(things[i].box.length, things[i].box.breadth) * frame.scale > 0.28
+    ]
     if area < 1.2 or not on_top:
         return False
     if any(c.gap < 0.1 for c in near):
@@ -162,7 +179,9 @@ def _standing(thing: Thing, frame: Frame, known: list[Item], loaded: bool) -> It
     flat = feet[min(feet)]
     near = contacts(frame, flat)
     looks = Looks(
-        thing.colour, thing.roundness, near[0].gap if near else 9.0,
+        thing.colour,
+        thing.roundness,
+        near[0].gap if near else 9.0,
         min((_gap(flat, k.foot) for k in known if k.category in BEDS), default=None),
         min((_gap(flat, k.foot) for k in known if k.category in TABLES), default=None),
         loaded,
@@ -188,8 +207,11 @@ def _resting(things: list[Thing], i: int, items: list[Item | None], frame: Frame
     holder = items[thing.inside]
     base = holder.base + holder.height if holder is not None else 0.0
     foot = frame.footprint(thing.box, 0.1, base)
-    category, height = ("decor", 0.12) if holder is None else small_category(
-        holder.category, thing.colour, things[thing.inside].colour, foot, thing.roundness)
+    category, height = (
+        ("decor", 0.12)
+        if holder is None
+        else small_category(holder.category, thing.colour, things[thing.inside].colour, foot, thing.roundness)
+    )
     return Item(thing, category, foot, height, 0.3, base=base, parent=thing.inside, minor=True)
 
 
@@ -217,17 +239,13 @@ def _turn(item: Item, items: list[Item], frame: Frame) -> None:
                 close.sort(key=lambda c: abs((c.yaw - along + 90) % 180 - 90) > 45)
             wish = close[0].yaw
         else:
-            wish = _away(near[0].yaw)
+            wish = near[0].yaw
     item.directed = wish is not None
     choices = [foot.angle + quarter for quarter in (0, 90, 180, 270)]
     yaw = min(choices, key=lambda y: abs((y - (wish or 0.0) + 180) % 360 - 180))
     item.yaw = float((yaw + 180) % 360 - 180)
     swapped = abs((item.yaw - foot.angle + 90) % 180 - 90) > 45
     item.width, item.depth = (foot.breadth, foot.length) if swapped else (foot.length, foot.breadth)
-
-
-def _away(yaw: float) -> float:
-    return yaw
 
 
 def measured_scale(things: list[Thing], frame: Frame, door: float | None) -> tuple[float, str]:
@@ -255,6 +273,3 @@ def measured_scale(things: list[Thing], frame: Frame, door: float | None) -> tup
     if door is not None and 0.55 < door < 1.3:
         return 0.85 / door, "The scale comes from what looks like a door, taken as 0.85 m wide."
     return 1.0, "Nothing of known size was seen: the room was taken as about 15 square metres. Set one known length."
-
-
-__all__ = ["FALLBACK", "Item", "Kind", "convex_hull", "furnish", "measured_scale", "nest"]

@@ -80,8 +80,9 @@ class _Board:
 
 def _absorb_slivers(board: _Board, thin: set[int], least: float) -> None:
     """Give thin lines and specks to the neighbour with the longest common border; lone specks go."""
-    for key in sorted(thin | {k for k, t in board.things.items() if t.size < least},
-                      key=lambda k: board.things[k].size):
+    for key in sorted(
+        thin | {k for k, t in board.things.items() if t.size < least}, key=lambda k: board.things[k].size
+    ):
         near = board.touch[key]
         if near:
             board.join(max(near, key=lambda k: (near[k], k)), key)
@@ -92,8 +93,11 @@ def _absorb_slivers(board: _Board, thin: set[int], least: float) -> None:
 def _solid_fill(board: _Board, key: int) -> float:
     """Share of a thing's rectangle that it fills together with the small things that lie in it."""
     thing = board.things[key]
-    extra = sum(board.things[o].size for o in board.touch[key]
-                if board.things[o].size < 0.5 * thing.size and _within(board.things[o], thing) > 0.95)
+    extra = sum(
+        board.things[o].size
+        for o in board.touch[key]
+        if board.things[o].size < 0.5 * thing.size and _within(board.things[o], thing) > 0.95
+    )
     return min(1.0, (thing.size + extra) / max(thing.box.area, 1.0))
 
 
@@ -172,8 +176,9 @@ def _likeness(thing: Thing, mate: Thing, border: int, room: float) -> float:
     if mate.size > 0.02 * room and thing.fill > 0.6 and thing.size > 0.0015 * room:
         return 0.0
     around = 2 * (thing.box.length + thing.box.breadth)
-    likeness = border / max(around, 1.0) - (
-        0.004 if mate.box.area < 6 * thing.box.area else 0.012) * float(np.linalg.norm(thing.colour - mate.colour))
+    likeness = border / max(around, 1.0) - (0.004 if mate.box.area < 6 * thing.box.area else 0.012) * float(
+        np.linalg.norm(thing.colour - mate.colour)
+    )
     if likeness < 0.12:
         return 0.0
     union = joined(thing, mate)
@@ -182,6 +187,7 @@ def _likeness(thing: Thing, mate: Thing, border: int, room: float) -> float:
 
 def _merge_fragments(board: _Board, room: float) -> None:
     """Join small pieces that touch along much of their border, such as leaves, to their closest neighbour."""
+
     def score(pair: tuple[int, int]) -> float:
         key, other = pair
         return _likeness(board.things[key], board.things[other], board.touch[key][other], room)
@@ -222,8 +228,9 @@ def group_things(labels: Ints, foreground: Bools, lab: Floats, room: float) -> l
         if core[rows, columns].mean() < 0.2:
             thin.add(int(key))
     a, b, length = neighbours(parts)
-    borders = {(int(x), int(y)): int(n) for x, y, n in zip(a, b, length, strict=True)
-               if int(x) in things and int(y) in things}
+    borders = {
+        (int(x), int(y)): int(n) for x, y, n in zip(a, b, length, strict=True) if int(x) in things and int(y) in things
+    }
     board = _Board(things, borders)
     _absorb_slivers(board, thin, max(6.0, 0.0004 * room))
     _merge_rectangles(board)

@@ -86,8 +86,9 @@ def ring_gaps(lab: Floats, ink: Floats, outline: Outline, frame: Frame) -> list[
             patch = strip[:, low:high].reshape(-1, 3)
             light = float(np.median(patch[:, 0]))
             chroma = float(np.median(np.hypot(patch[:, 1], patch[:, 2])))
-            outside = outline.surround is not None and float(
-                np.linalg.norm(np.median(patch, axis=0) - outline.surround)) < 4
+            outside = (
+                outline.surround is not None and float(np.linalg.norm(np.median(patch, axis=0) - outline.surround)) < 4
+            )
             drawn = inward(ink[..., None], outline.outer, edge, thickness)[:, low + 1 : high - 1, 0] < 65
             lined = drawn.size > 0 and bool((drawn.mean(1) > 0.8).any())
             window = light > 62 and chroma < 14 and (lined or width > 1.15 or not outside)
@@ -111,8 +112,14 @@ def _gap(outline: Outline, frame: Frame, edge: int, run: tuple[int, int], window
     along = sorted(float((np.array(p) - start) @ (end - start) / max(np.linalg.norm(end - start), 1e-9)) for p in ends)
     sill, height = (0.9, 1.3) if window else (0.0, 2.05)
     limited = (max(along[0], 0.0), min(along[1], float(np.linalg.norm(end - start))))
-    return Opening("window" if window else "door", wall, limited, sill, height,
-                   (float(bounds[0]), float(bounds[1]), float(bounds[2]), float(bounds[3])))
+    return Opening(
+        "window" if window else "door",
+        wall,
+        limited,
+        sill,
+        height,
+        (float(bounds[0]), float(bounds[1]), float(bounds[2]), float(bounds[3])),
+    )
 
 
 def on_wall(frame: Frame, thing: Thing, inside: Bools, light: float) -> Opening | None:
@@ -145,8 +152,9 @@ def on_wall(frame: Frame, thing: Thing, inside: Bools, light: float) -> Opening 
     return None
 
 
-def _read_face(frame: Frame, thing: Thing, edge: int, a: NDArray[np.float64], b: NDArray[np.float64], light: float
-               ) -> Opening | None:
+def _read_face(
+    frame: Frame, thing: Thing, edge: int, a: NDArray[np.float64], b: NDArray[np.float64], light: float
+) -> Opening | None:
     normal = np.array([(b - a)[1], -(b - a)[0]])
     level = float(normal @ a)
     rays = thing.hull - np.array(frame.vanishing)

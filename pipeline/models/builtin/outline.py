@@ -37,8 +37,9 @@ class Outline:
 
 def surroundings(lab: Floats) -> tuple[Bools, Floats] | None:
     """The plain area that is joined with the picture's border, and its colour; None where the border is not plain."""
-    rim = np.concatenate([lab[:2].reshape(-1, 3), lab[-2:].reshape(-1, 3), lab[:, :2].reshape(-1, 3),
-                          lab[:, -2:].reshape(-1, 3)])
+    rim = np.concatenate(
+        [lab[:2].reshape(-1, 3), lab[-2:].reshape(-1, 3), lab[:, :2].reshape(-1, 3), lab[:, -2:].reshape(-1, 3)]
+    )
     colour = np.median(rim, axis=0)
     if np.mean(np.linalg.norm(rim - colour, axis=1) < PLAIN) < 0.6:
         return None

@@ -79,8 +79,12 @@ class Frame:
         x0, y0, x1, y1 = box.bounds()
         low, high = self.floor.min(0), self.floor.max(0)
         px, py = self.vanishing
-        ratios = [(px - x0) / max(px - low[0], 1e-6), (x1 - px) / max(high[0] - px, 1e-6),
-                  (py - y0) / max(py - low[1], 1e-6), (y1 - py) / max(high[1] - py, 1e-6)]
+        ratios = [
+            (px - x0) / max(px - low[0], 1e-6),
+            (x1 - px) / max(high[0] - px, 1e-6),
+            (py - y0) / max(py - low[1], 1e-6),
+            (y1 - py) / max(high[1] - py, 1e-6),
+        ]
         camera = self.height / (1.0 - self.shrink)
         height = camera * (1 - 1 / max(max(ratios), 1.0))
         return float(min(height, self.height)) if height > 0.25 else None

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .grid import Bools, Floats, Ints, components, dilate, polygon_mask
+from .grid import Bools, Floats, Ints, components, opened, polygon_mask
 from .outline import Outline, inset
 from .regions import Sorted
 from .segment import area_means
@@ -15,8 +15,12 @@ def is_plan(lab: Floats) -> bool:
     """True for a drawing: no colour, mostly white, the rest mostly black, and little between."""
     chroma = np.hypot(lab[..., 1], lab[..., 2])
     white, black = lab[..., 0] > 88, lab[..., 0] < 40
-    return bool(np.mean(chroma < 10) > 0.98 and white.mean() > 0.55 and 0.005 < black.mean() < 0.4
-                and white.mean() + black.mean() > 0.82)
+    return bool(
+        np.mean(chroma < 10) > 0.98
+        and white.mean() > 0.55
+        and 0.005 < black.mean() < 0.4
+        and white.mean() + black.mean() > 0.82
+    )
 
 
 def _without_lines(labels: Ints, line: Bools) -> Ints:
@@ -55,7 +59,7 @@ def sort_plan(lab: Floats, ink: Floats, outline: Outline) -> Sorted:
     outside = np.unique(areas[~room & ~line])
     bare |= np.isin(areas, outside)
     labels = _without_lines(areas, line)
-    foreground = room & ~dilate(bare & room, 1)
-    foreground = dilate(foreground, 1) & room & ~bare
+    ground = np.append(outside, floor)
+    foreground = opened(room & ~bare & ~np.isin(labels, ground), 1)
     colour = np.array([100.0, 0.0, 0.0], dtype=np.float32)
     return Sorted(labels, bare & room, foreground, colour)

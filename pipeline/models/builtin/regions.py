@@ -98,8 +98,10 @@ def soften(labels: Ints, lab: Floats, side: Ints, step: float = 2.6, apart: floa
 def _trapezoids(shape: tuple[int, int], top: Polygon, floor: Polygon) -> list[Bools]:
     """Masks of the wall faces between wall tops and floor, one an edge."""
     count = len(top)
-    return [polygon_mask(shape, np.array([top[i], top[(i + 1) % count], floor[(i + 1) % count], floor[i]]))
-            for i in range(count)]
+    return [
+        polygon_mask(shape, np.array([top[i], top[(i + 1) % count], floor[(i + 1) % count], floor[i]]))
+        for i in range(count)
+    ]
 
 
 def _distance(mean: Floats, colours: Floats, spread: NDArray[np.float64]) -> Floats:
@@ -125,7 +127,11 @@ def _islands(labels: Ints, lab: Floats, candidates: Ints, floor_size: float) -> 
             continue
         hull = convex_hull(outline_points(mask))
         box = oriented_box(hull)
-        if mask.sum() < 0.88 * polygon_area(hull) or mask.sum() < 0.6 * box.area or min(box.length, box.breadth) < 0.085 * short:
+        if (
+            mask.sum() < 0.88 * polygon_area(hull)
+            or mask.sum() < 0.6 * box.area
+            or min(box.length, box.breadth) < 0.085 * short
+        ):
             continue
         mine = (a == area) | (b == area)
         edged = (contrast[mine] > 2.5) | (length[mine] < 4)
@@ -201,7 +207,9 @@ def _shadows(labels: Ints, rgb: Floats, lab: Floats, lit: Ints, zone: Bools) -> 
         np.add.at(soft, x, length * surface[y] * (contrast < (16.0 if hued else 6.0)))
     gentle = soft > 0.6 * np.maximum(touching, 1)
     within = np.bincount(labels[zone], minlength=count) > 0.5 * size
-    result: Ints = np.flatnonzero(even & gentle & (factor > 0.12) & (factor < 1.06) & (touching > 0) & ~surface & within)
+    result: Ints = np.flatnonzero(
+        even & gentle & (factor > 0.12) & (factor < 1.06) & (touching > 0) & ~surface & within
+    )
     return result
 
 

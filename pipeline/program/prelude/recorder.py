@@ -57,9 +57,7 @@ class Recorder:
             raise fail("room", "the floor's corners must run counter-clockwise round an area")
         self.record.room = {"size": sizes("room", "size", size), "floor": corners}
 
-    def wall(
-        self, id: Any, start: Any, end: Any, height: Any, thickness: Any = 0.12, partition: Any = False
-    ) -> None:
+    def wall(self, id: Any, start: Any, end: Any, height: Any, thickness: Any = 0.12, partition: Any = False) -> None:
         """A wall along its inner face, thickness outside; a partition along its centre line."""
         line = self._segment("wall", id, start, end)
         line["height"] = positive("wall", "height", height)

@@ -127,9 +127,7 @@ def capsule(radius: Any, height: Any, at: Any = ORIGIN, segments: Any = 24, ring
     return placed("capsule", along("capsule", vertices, axis), faces, at, smooth=True)
 
 
-def torus(
-    radius: Any, thickness: Any, at: Any = ORIGIN, segments: Any = 32, rings: Any = 12, axis: Any = "z"
-) -> Shape:
+def torus(radius: Any, thickness: Any, at: Any = ORIGIN, segments: Any = 32, rings: Any = 12, axis: Any = "z") -> Shape:
     """A ring: `radius` to the middle of the tube, `thickness` the tube's own radius, smaller than `radius`."""
     middle, bend = positive("torus", "radius", radius), positive("torus", "thickness", thickness)
     if bend >= middle:
