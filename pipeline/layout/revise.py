@@ -92,7 +92,7 @@ def _move(
         apart = box.iou(item.box)
         if apart < SEEN_IOU and item.confidence >= SURE:
             return Finding(about=item.id, message="The critic moves it to where it was not seen before; refused.")
-        if apart > 0.97:
+        if apart > 0.97 and asked.size_m is None:
             return None
         box = _mean_box(item.box, box)
     update: dict[str, object] = {"box": box}
