@@ -7,12 +7,12 @@ import argparse
 import os
 import sys
 import tempfile
+import traceback
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..pipeline.errors import OutputError, RoomError
-from ..pipeline.memory import Memory, load_memory
 
 if TYPE_CHECKING:
     from ..pipeline.models.base import ModelClient
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 EXIT_PROBLEM = 1
 EXIT_USAGE = 2
+EXIT_STOPPED = 130
+DEBUG = "CODE_AS_ROOM_DEBUG"
 
 
 def parser(program: str) -> argparse.ArgumentParser:
@@ -52,6 +54,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def cli_main(argv: list[str], program: str = "blender --command code_as_room") -> int:
     """Run the command line; errors become one sentence on standard error, never a traceback."""
+    _print_anything()
     try:
         options = parser(program).parse_args(argv)
     except SystemExit as stop:
@@ -59,21 +62,42 @@ def cli_main(argv: list[str], program: str = "blender --command code_as_room") -
     try:
         return _perform(options)
     except RoomError as error:
-        print(f"{program}: {error}", file=sys.stderr)
+        print(f"{program}: {_one_line(str(error))}", file=sys.stderr)
         return EXIT_PROBLEM
     except KeyboardInterrupt:
         print(f"\n{program}: stopped. What was answered is kept; add --resume to go on.", file=sys.stderr)
-        return 130
+        return EXIT_STOPPED
+    except Exception as error:
+        # A mistake of ours. The artist is told what to do; who looks for it sets the variable.
+        if os.environ.get(DEBUG):
+            traceback.print_exc()
+        words = _one_line(f"{type(error).__name__}: {error}")[:300]
+        print(f"{program}: unexpected problem ({words}). Please report it; {DEBUG}=1 shows where.", file=sys.stderr)
+        return EXIT_PROBLEM
+
+
+def _print_anything() -> None:
+    """Names may hold characters that the terminal cannot show; that must not end a run."""
+    for stream in (sys.stdout, sys.stderr):
+        reconfigure = getattr(stream, "reconfigure", None)
+        if reconfigure is not None:
+            reconfigure(errors="backslashreplace")
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.split())
 
 
 def _perform(options: argparse.Namespace) -> int:
     from ..pipeline.picture import load_picture
+    from .keeping import MemoryFile
 
     picture = load_picture(options.picture)
-    folder = prepare_folder(options.out)
-    memory = _memory(folder, options.resume)
-    memory.settings = _settings(options, memory.settings)
     client = _client(options)
+    folder = prepare_folder(options.out)
+    kept = MemoryFile(folder, options.resume)
+    memory = kept.load()
+    memory.settings = _settings(options, memory.settings)
     for note in picture.notes:
         print(f"Note: {note}")
     print(f"Picture: {picture.name}, {picture.width} x {picture.height}")
@@ -86,17 +110,27 @@ def _perform(options: argparse.Namespace) -> int:
         ) from error
     from ..pipeline.run import Run
     from ..pipeline.scene.backend import BlenderScene
+    from ..pipeline.stages import all_stages
 
     bpy.ops.wm.read_factory_settings(use_empty=True)
     run = Run(picture, memory, client, BlenderScene(bpy.context.scene), progress=_print_progress)
     try:
-        run.run_all()
-    finally:
-        _save_memory(run, folder)
-    return _finish(run, folder)
+        for stage in all_stages():
+            run.run_all([stage])
+            kept.keep(memory)
+        _finish(run, folder)
+    except BaseException:
+        # A client that is still waiting for an answer gives up on this.
+        run.cancel.set()
+        kept.keep(memory)
+        if kept.told():
+            print(kept.told())
+        raise
+    kept.finish()
+    return 0
 
 
-def _finish(run: Run, folder: Path) -> int:
+def _finish(run: Run, folder: Path) -> None:
     from ..pipeline.artifacts.layout import LayoutProgram
     from .outputs import write_outputs
 
@@ -110,38 +144,26 @@ def _finish(run: Run, folder: Path) -> int:
     print(f"Results in {folder}:")
     for path in paths:
         print(f"  {path.name}")
-    return 0
 
 
-def prepare_folder(folder: Path) -> Path:
-    """The folder for results, made if it is not there and tried for writing before any work is done.
+def prepare_folder(folder: Path, option: str = "--out") -> Path:
+    """The folder of an option, made if it is not there and tried for writing before any work is done.
 
     Raises:
         OutputError: it is a file, or nothing can be written in it.
     """
     try:
+        if folder.is_file():
+            raise OutputError(f"{folder} is a file, not a folder.", f"Choose a folder with {option}.")
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.NamedTemporaryFile(dir=folder, prefix=".try-", delete=True):
             pass
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise OutputError(
-            f"Nothing can be written in {folder}: {reason}.", "Choose another folder with --out."
+            f"Nothing can be written in {folder}: {reason}.", f"Choose another folder with {option}."
         ) from error
     return folder
-
-
-def _memory(folder: Path, resume: bool) -> Memory:
-    path = folder / "memory.json"
-    if not resume:
-        return Memory()
-    try:
-        return load_memory(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        print(f"Nothing to resume in {folder}; beginning anew.")
-        return Memory()
-    except (OSError, UnicodeDecodeError) as error:
-        raise RoomError(f"{path.name} cannot be read: {error}.", "Run without --resume to begin anew.") from error
 
 
 def _settings(options: argparse.Namespace, earlier: dict[str, str]) -> dict[str, str]:
@@ -156,7 +178,8 @@ def _settings(options: argparse.Namespace, earlier: dict[str, str]) -> dict[str,
             raise RoomError(f"{value:g} m is not a possible size.", f"Give metres between {low:g} and {high:g}.")
         settings[name] = f"{value:g}"
     if options.notes:
-        settings["notes"] = options.notes
+        # An argument may hold bytes that are no text.
+        settings["notes"] = options.notes.encode("utf-8", "replace").decode("utf-8")
     settings["iterations"] = str(max(0, min(5, options.iterations)))
     return settings
 
@@ -173,15 +196,10 @@ def _client(options: argparse.Namespace) -> ModelClient:
     else:
         settings = settings_from_environment()
     client = make_client(settings)
-    return Recorder(client, options.record) if options.record is not None else client
+    if options.record is None:
+        return client
+    return Recorder(client, prepare_folder(options.record, "--record"))
 
 
 def _print_progress(what: str, step: int, steps: int) -> None:
     print(f"  {what}" + (f" ({step}/{steps})" if steps else ""), flush=True)
-
-
-def _save_memory(run: Run, folder: Path) -> None:
-    """Keep what was answered even when a stage fails."""
-    from .outputs import write_memory
-
-    write_memory(run.memory, folder)

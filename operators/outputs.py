@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Writes the results of a run: room.py, room.blend, scene.json, memory.json, top.png, view.png, report.html.
 
-Every file is written beside its place first and moved there whole, so that a full disk or a crash leaves no half file.
+All of them are made beside their places first and moved there together, so that a full disk or a crash leaves neither
+half a file nor results of two rooms.
 """
 
 from __future__ import annotations
 
 import os
-import tempfile
-from collections.abc import Callable
+import secrets
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -23,66 +24,95 @@ from ..pipeline.report import make_report
 from ..pipeline.run import Run
 
 LONG_SIDE = 1280
+Write = Callable[[Path], Any]
 
 
 def write_outputs(run: Run, folder: Path) -> list[Path]:
     """Write everything that the run has so far; main thread only.
 
     Raises:
-        OutputError: a file cannot be written; those written before it are whole.
+        OutputError: a file cannot be written; what was in the folder before is still there.
         RoomError: there is no layout yet.
     """
     program, calibration = run.memory.latest(LayoutProgram), run.memory.latest(Calibration)
     if program is None or calibration is None:
         raise RoomError("There is no layout yet.", "Run the stages up to the layout first.")
     backend = run.backend
+    if not backend.program_text():
+        # A finished run that was resumed from its memory alone has nothing in the scene.
+        backend.build(program.text)
     text = backend.program_text() or program.text
     document = backend.scene_document(run.picture.name, calibration.camera)
     top = backend.render(calibration.camera, LONG_SIDE, labels=False)
     view = backend.render_view(LONG_SIDE)
-    overlay = draw_outlines(run.picture.for_model(), calibration.camera, parse_layout(text).proxies)
-    pictures = {"reference": run.picture.for_model(), "top": top, "view": view, "overlay": overlay}
-    return [
-        write_file(folder / "room.py", assemble(text).encode()),
-        write_with(folder / "room.blend", backend.save_copy),
-        write_file(folder / "scene.json", (document.model_dump_json(indent=1) + "\n").encode()),
-        write_memory(run.memory, folder),
-        write_file(folder / "top.png", top),
-        write_file(folder / "view.png", view),
-        write_file(
-            folder / "report.html", make_report(run.memory, pictures, run.reports, run.client.describes).encode()
-        ),
-    ]
+    reference = run.picture.for_model()
+    overlay = draw_outlines(reference, calibration.camera, parse_layout(text).proxies)
+    pictures = {"reference": reference, "top": top, "view": view, "overlay": overlay}
+    report = make_report(run.memory, pictures, run.reports, run.client.describes)
+    return write_together(
+        folder,
+        {
+            "room.py": _bytes(assemble(text).encode()),
+            "room.blend": backend.save_copy,
+            "scene.json": _bytes((document.model_dump_json(indent=1) + "\n").encode()),
+            "memory.json": _bytes(dump_memory(run.memory).encode()),
+            "top.png": _bytes(top),
+            "view.png": _bytes(view),
+            "report.html": _bytes(report.encode()),
+        },
+    )
 
 
 def write_memory(memory: Memory, folder: Path) -> Path:
-    """Write memory.json."""
-    return write_file(folder / "memory.json", dump_memory(memory).encode())
-
-
-def write_file(path: Path, data: bytes) -> Path:
-    """Write bytes to a file, whole or not at all."""
-
-    def write(part: Path) -> Any:
-        part.write_bytes(data)
-
-    return write_with(path, write)
-
-
-def write_with(path: Path, write: Callable[[Path], Any]) -> Path:
-    """Let `write` make a file beside its place, then move it there.
+    """Write memory.json, whole or not at all.
 
     Raises:
-        OutputError: the folder is gone, full or read-only.
+        OutputError: it cannot be written.
     """
-    part: Path | None = None
+    return write_together(folder, {"memory.json": _bytes(dump_memory(memory).encode())})[0]
+
+
+def write_together(folder: Path, writers: Mapping[str, Write]) -> list[Path]:
+    """Let each writer make its file beside its place, then move all of them there.
+
+    The parts lie in the folder itself, since a .blend keeps paths relative to where it was saved.
+
+    Args:
+        writers: by file name, what writes the file at the path that it is handed.
+
+    Raises:
+        OutputError: the folder is gone, full or read-only, or a folder stands where a file belongs.
+    """
+    mark = f".part-{secrets.token_hex(4)}-"
+    name = ""
     try:
-        with tempfile.TemporaryDirectory(dir=path.parent, prefix=".part-") as folder:
-            part = Path(folder) / path.name
-            write(part)
-            os.replace(part, path)
+        for name in writers:
+            if (folder / name).is_dir():
+                raise IsADirectoryError(0, "a folder of that name is in its place")
+        for name, write in writers.items():
+            write(folder / (mark + name))
+        for name in writers:
+            os.replace(folder / (mark + name), folder / name)
     except OSError as error:
         raise OutputError(
-            f"{path.name} cannot be written: {error.strerror or error}.", "Choose another folder, or make room."
+            f"{name} cannot be written: {error.strerror or error}.", "Choose another folder, or make room."
         ) from error
-    return path
+    finally:
+        for name in writers:
+            _forget(folder / (mark + name))
+    return [folder / name for name in writers]
+
+
+def _bytes(data: bytes) -> Write:
+    def write(path: Path) -> Any:
+        path.write_bytes(data)
+
+    return write
+
+
+def _forget(part: Path) -> None:
+    try:
+        part.unlink(missing_ok=True)
+    except OSError:
+        # The folder is gone or read-only; there is nothing that could be cleaned up.
+        return

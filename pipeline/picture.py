@@ -122,7 +122,8 @@ def load_picture(path: str | Path) -> ReferencePicture:
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or "its path is not valid"
         raise PictureError(f"{path.name!r} cannot be read: {reason}.", "Check the path and its permissions.") from None
-    return read_picture(data, path.name)
+    # A file's name may hold bytes that are no text; memory and report hold text.
+    return read_picture(data, path.name.encode("utf-8", "replace").decode("utf-8"))
 
 
 def read_picture(data: bytes, name: str) -> ReferencePicture:

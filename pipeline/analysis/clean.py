@@ -12,6 +12,9 @@ from ..errors import ReplyError
 
 MAX_OBJECTS = 300
 MAX_METRES = 100.0
+SIDE_NAMES = frozenset({"left", "right", "top", "bottom"})
+SHELL_NAMES = frozenset({"room", "floor", "reference", "wall_n", "wall_e", "wall_s", "wall_w"})
+"""What the layout itself calls the room, its outer walls and its camera; nothing that was seen may be called so."""
 FACING_YAW = {
     "down": 0.0,
     "down-right": 45.0,
@@ -26,14 +29,19 @@ FACING_YAW = {
 
 def clean_id(text: str, taken: set[str], fallback: str) -> str:
     """A unique lower-case identifier made from `text`; it is added to `taken`."""
-    base = re.sub(r"[^a-z0-9]+", "_", text.lower()).strip("_")[:40] or fallback
+    base = re.sub(r"[^a-z0-9]+", "_", text[:200].lower()).strip("_")[:40] or fallback
     if base[0].isdigit():
         base = f"{fallback}_{base}"
     name, number = base, 2
-    while name in taken:
+    while name in taken or _is_shell_name(name):
         name, number = f"{base}_{number}", number + 1
     taken.add(name)
     return name
+
+
+def _is_shell_name(name: str) -> bool:
+    # Rooms of many corners have a wall_n_2, wall_n_3, ...
+    return name in SHELL_NAMES or re.fullmatch(r"wall_[nesw]_\d+", name) is not None
 
 
 def clean_box(box: BoxReply | None) -> ImageBox | None:
@@ -66,12 +74,13 @@ def clean_object(reply: ObjectReply, taken: set[str], findings: list[Finding], s
     raw = (reply.box.x_min, reply.box.y_min, reply.box.x_max, reply.box.y_max)
     if box is not None and (raw[0] > raw[2] or raw[1] > raw[3]):
         findings.append(Finding(about=name, message="Its box was inside out; the corners were put in order."))
-    size = [min(MAX_METRES, abs(v)) for v in (reply.size_m.width, reply.size_m.depth, reply.size_m.height)]
-    if min(size) < 0.001:
-        size = [max(0.01, v) for v in size]
-        findings.append(Finding(about=name, message="A size of zero was raised to 1 cm."))
-    x, y = (max(-MAX_METRES, min(MAX_METRES, v)) for v in (reply.centre_m.x_m, reply.centre_m.y_m))
+    size = _clean_size(reply, name, findings)
+    said = (reply.centre_m.x_m, reply.centre_m.y_m, reply.base_m)
+    x, y = (max(-MAX_METRES, min(MAX_METRES, v)) for v in said[:2])
     base = max(0.0, min(10.0, reply.base_m))
+    if max(abs(x - said[0]), abs(y - said[1]), abs(base - said[2])) > 0.05:
+        message = f"Its place {said[0]:.4g}, {said[1]:.4g}, {said[2]:.4g} m is not possible; it was brought nearer."
+        findings.append(Finding(about=name, message=message))
     yaw = facing_yaw(reply.facing, reply.yaw_deg)
     if abs((yaw - reply.yaw_deg % 360 + 180) % 360 - 180) > 1:
         findings.append(
@@ -84,7 +93,7 @@ def clean_object(reply: ObjectReply, taken: set[str], findings: list[Finding], s
         placement=reply.placement,
         parent=reply.parent or None,
         salience=reply.salience,
-        zone=reply.zone or None,
+        zone=(reply.zone or "")[:60] or None,
         shape=reply.shape,
         box=box,
         centre=(x, y, base + size[2] / 2),
@@ -93,6 +102,20 @@ def clean_object(reply: ObjectReply, taken: set[str], findings: list[Finding], s
         confidence=max(0.0, min(1.0, reply.confidence)),
         source=source,
     )
+
+
+def _clean_size(reply: ObjectReply, name: str, findings: list[Finding]) -> list[float]:
+    """Width, depth and height above 1 mm and up to `MAX_METRES`."""
+    said = (reply.size_m.width, reply.size_m.depth, reply.size_m.height)
+    size = [min(MAX_METRES, abs(v)) for v in said]
+    if min(said) < 0:
+        findings.append(Finding(about=name, message="A negative size was taken without its sign."))
+    if max(map(abs, said)) > MAX_METRES:
+        findings.append(Finding(about=name, message=f"A size of more than {MAX_METRES:g} m was cut to that."))
+    if min(size) < 0.001:
+        size = [max(0.01, v) for v in size]
+        findings.append(Finding(about=name, message="A size of zero was raised to 1 cm."))
+    return size
 
 
 def fix_parents(objects: list[DetectedObject], walls: set[str], findings: list[Finding]) -> list[DetectedObject]:
@@ -205,11 +228,10 @@ def clean_analysis(reply: AnalysisReply, image_size: tuple[int, int]) -> SceneAn
                 message=f"{len(reply.objects)} objects were answered; the first {MAX_OBJECTS} are used.",
             )
         )
-    taken: set[str] = set()
-    objects = [clean_object(o, taken, findings, "analysis") for o in reply.objects[:MAX_OBJECTS]]
+    if not reply.objects:
+        findings.append(Finding(about="objects", message="No objects were recognised.", severity="warning"))
     architecture = clean_architecture(reply.architecture, findings)
-    walls = {a.id for a in architecture} | {"left", "right", "top", "bottom"}
-    kept = fix_parents([o for o in objects if o is not None], walls, findings)
+    kept = _clean_objects(reply.objects[:MAX_OBJECTS], {a.id for a in architecture}, findings)
     zone_ids: set[str] = set()
     zones = [Zone(id=clean_id(z.id, zone_ids, "zone"), label=z.label[:80]) for z in reply.zones[:20]]
     return SceneAnalysis(
@@ -219,7 +241,7 @@ def clean_analysis(reply: AnalysisReply, image_size: tuple[int, int]) -> SceneAn
         room_size=(
             _metres(reply.room_width_m, "room width", findings),
             _metres(reply.room_depth_m, "room depth", findings),
-            max(1.8, min(8.0, reply.wall_height_m)),
+            _wall_height(reply.wall_height_m, findings),
         ),
         floor=[],
         floor_polygon=floor,
@@ -229,6 +251,33 @@ def clean_analysis(reply: AnalysisReply, image_size: tuple[int, int]) -> SceneAn
         objects=kept,
         findings=findings,
     )
+
+
+def _clean_objects(replies: list[ObjectReply], architecture: set[str], findings: list[Finding]) -> list[DetectedObject]:
+    """The objects with ids that nothing else in the room has, and parents named by those ids."""
+    taken = set(architecture)
+    objects: list[DetectedObject] = []
+    named: dict[str, str] = {}
+    for reply in replies:
+        item = clean_object(reply, taken, findings, "analysis")
+        if item is not None:
+            objects.append(item)
+            named.setdefault(reply.id, item.id)
+    own = {o.id for o in objects} | architecture | SIDE_NAMES
+    # A model that calls a thing "Night stand" calls it so again where it is a parent.
+    renamed = [
+        o if o.parent is None or o.parent in own else o.model_copy(update={"parent": named.get(o.parent, o.parent)})
+        for o in objects
+    ]
+    return fix_parents(renamed, architecture | SIDE_NAMES, findings)
+
+
+def _wall_height(value: float, findings: list[Finding]) -> float:
+    height = max(1.8, min(8.0, value))
+    if height != value:
+        message = f"The wall height {value:g} m is not possible; {height:g} m is used."
+        findings.append(Finding(about="room", message=message, severity="warning"))
+    return height
 
 
 def _metres(value: float, name: str, findings: list[Finding]) -> float:

@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Literal
+
+from pydantic import AfterValidator
 
 from .camera import CameraModel
 from .common import Artifact, ImageBox, ImagePoint, Metres2, Metres3, Placement, Salience, Shape
@@ -69,11 +71,16 @@ class DetectedObject(Artifact):
     source: str = "analysis"
 
 
+def _short(text: str) -> str:
+    # A finding may quote what a model wrote, and that may be of any length.
+    return text if len(text) <= 300 else text[:299] + "\u2026"
+
+
 class Finding(Artifact):
     """Something that was repaired, dropped or doubted, in one plain sentence."""
 
-    about: str
-    message: str
+    about: Annotated[str, AfterValidator(_short)]
+    message: Annotated[str, AfterValidator(_short)]
     severity: Literal["note", "warning", "error"] = "note"
 
 

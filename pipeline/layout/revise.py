@@ -123,7 +123,9 @@ def _add(
         lifted = lift_box(calibration.camera, box, 0.0, size[2], yaw, size)
     except GeometryError as error:
         return Finding(about=asked.id, message=f"What the critic adds cannot be placed: {error.message}")
-    name = clean_id(asked.id or asked.category, set(evidence.objects) | {w.id for w in layout.walls}, "object")
+    cut = [line.id for lines in (layout.doors, layout.windows, layout.openings) for line in lines]
+    taken = {*evidence.objects, *(w.id for w in layout.walls), *cut}
+    name = clean_id(asked.id or asked.category, taken, "object")
     item = DetectedObject(
         id=name,
         category=asked.category[:60],

@@ -48,6 +48,10 @@ class Reply:
     seconds: float = 0.0
     notes: tuple[str, ...] = ()
 
+    def __post_init__(self) -> None:
+        # Half of a surrogate pair is no character: neither a file nor Blender can hold it.
+        object.__setattr__(self, "text", self.text.encode("utf-8", "replace").decode("utf-8"))
+
 
 class ModelClient(Protocol):
     """Something that answers prompts. `answer` is called from worker threads, several at once.

@@ -33,6 +33,10 @@ OUR_LIMITS = (
     "only numbers can have the format",
     "% does not format text",
     "contains itself",
+    "a text is longer than",
+    "too many items",
+    "more than 100,000 items",
+    "steps",
 )
 """Parts of the sentences with which the language refuses what Python allows."""
 

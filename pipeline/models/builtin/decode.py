@@ -81,7 +81,7 @@ def decode(data: bytes, long_side: int = LONG_SIDE) -> WorkPicture:
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
         raise PictureError("The picture cannot be read.", "Save it as PNG or JPEG and load it again.") from error
     scale = long_side / max(flat.size)
-    dark = flat
+    dark = flat.convert("L")
     if scale < 1:
         small = (max(1, round(flat.width * scale)), max(1, round(flat.height * scale)))
         flat = flat.resize(small, Image.Resampling.BOX if scale < 0.5 else Image.Resampling.LANCZOS)
@@ -90,5 +90,5 @@ def decode(data: bytes, long_side: int = LONG_SIDE) -> WorkPicture:
     if min(flat.size) >= 5:
         flat = flat.filter(ImageFilter.MedianFilter(3))
     rgb = np.asarray(flat, dtype=np.float32)
-    ink = rgb_to_lab(np.asarray(dark, dtype=np.float32))[..., 0]
+    ink = rgb_to_lab(np.repeat(np.asarray(dark, dtype=np.float32)[..., None], 3, axis=2))[..., 0]
     return WorkPicture(rgb, rgb_to_lab(rgb), ink, size)

@@ -89,8 +89,13 @@ def nest(things: list[Thing], frame: Frame, coloured: bool = True) -> None:
             if i != j and shares[i, j] > 0.8 and _is_pattern(inner, things[j], coloured):
                 inner.flat, inner.inside = False, PATTERN
                 things[j].size += inner.size
-    ragged = [i for i, thing in enumerate(things) if not thing.flat and thing.fill < 0.55 and any(
-        shares[i, j] > 0.5 and other.fill > thing.fill and not other.flat for j, other in enumerate(things))]
+    ragged = [
+        i
+        for i, thing in enumerate(things)
+        if not thing.flat
+        and thing.fill < 0.55
+        and any(shares[i, j] > 0.5 and other.fill > thing.fill and not other.flat for j, other in enumerate(things))
+    ]
     things[:] = [thing for i, thing in enumerate(things) if thing.inside != PATTERN and i not in ragged]
     shares = _shares(things)
     for i, inner in enumerate(things):
