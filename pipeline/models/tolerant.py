@@ -48,7 +48,8 @@ def read_json_noted(text: str) -> tuple[Any, tuple[str, ...]]:
     if len(text) > MAX_CHARACTERS:
         raise ReplyError("The answer is too long to be a description of a room.", "Ask again.")
     body = text.replace("\ufeff", "").strip()
-    if _THINKING_END in body:
+    # A text that begins with JSON has no reasoning before it; the tag is then part of a string.
+    if _THINKING_END in body and body[0] not in "{[":
         body = body.rsplit(_THINKING_END, 1)[1].strip()
     if not body:
         raise ReplyError("The answer is empty.", "Ask again.", ("The answer is empty.",))

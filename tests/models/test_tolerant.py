@@ -18,6 +18,7 @@ READABLE = {
     "```\n[1, 2]\n```": [1, 2],
     'Here it is:\n```json\n{"a": {"b": 2}}\n```\nI hope {this} helps [1].': {"a": {"b": 2}},
     'The bed\'s [left] side. {"a": 1, "b": [2, 3]} Done.': {"a": 1, "b": [2, 3]},
+    '{"a": "</think>", "b": 1}': {"a": "</think>", "b": 1},
     '<think>maybe {"a": 9, "b": 9, "c": 9}?</think>{"a": 1}': {"a": 1},
     '{"a": 1, "b": [1, 2,],}': {"a": 1, "b": [1, 2]},
     '{"a": 1, // one\n /* two */ "b": 2}': {"a": 1, "b": 2},
