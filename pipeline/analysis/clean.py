@@ -30,10 +30,10 @@ FACING_YAW = {
 def clean_id(text: str, taken: set[str], fallback: str) -> str:
     """A unique lower-case identifier made from `text`; it is added to `taken`."""
     base = re.sub(r"[^a-z0-9]+", "_", text[:200].lower()).strip("_")[:40] or fallback
-    if base[0].isdigit():
+    if base[0].isdigit() or _is_shell_name(base):
         base = f"{fallback}_{base}"
     name, number = base, 2
-    while name in taken or _is_shell_name(name):
+    while name in taken:
         name, number = f"{base}_{number}", number + 1
     taken.add(name)
     return name

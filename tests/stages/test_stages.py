@@ -165,9 +165,9 @@ def test_the_critic_mends_a_wrong_box_and_the_best_round_is_kept(
 
 @pytest.mark.parametrize(("allowed", "asked"), [("0", 0), ("1", 1), ("3", 2)])
 def test_the_artist_limits_the_rounds(run: Run, answers: Any, allowed: str, asked: int) -> None:
-    box = next(o["box"] for o in answers.by_key["01_analysis"]["objects"] if o["id"] == "chair")
-    moved = {k: v + (12 if k.startswith("x") else 0) for k, v in box.items()}
-    edit = {"op": "move", "id": "chair", "box": moved}
+    box = next(o["box"] for o in answers.by_key["01_analysis"]["objects"] if o["id"] == "closet")
+    moved = {k: v + (25 if k.startswith("x") else 0) for k, v in box.items()}
+    edit = {"op": "move", "id": "closet", "box": moved}
     answers.by_key["03_critique"] = lambda p: {"score": 50, "edits": [edit] if p.key.endswith("/0") else []}
     run.memory.settings["iterations"] = allowed
     run.run_all()
