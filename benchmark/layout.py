@@ -34,9 +34,9 @@ def figures(truth: Room, result: Room) -> dict[str, Any]:
     return {
         "aspect": aspect,
         "aspect_error": abs(aspect / true_aspect - 1),
-        "recall": len(matched) / len(truth.things),
-        "recall_majors": sum(t.id in matched for t in majors) / len(majors),
-        "iou_majors": sum(ious) / len(ious),
+        "recall": len(matched) / len(truth.things) if truth.things else 1.0,
+        "recall_majors": sum(t.id in matched for t in majors) / len(majors) if majors else 1.0,
+        "iou_majors": sum(ious) / len(ious) if ious else 1.0,
         "facing_within_15": sum(a <= 15 for a in turned) / len(turned) if turned else 1.0,
         "worst_major_overlap": _worst_overlap(result),
         "worst_major_outside": max(

@@ -16,14 +16,15 @@ from typing import Any
 from ..pipeline.artifacts.analysis import Calibration
 from ..pipeline.artifacts.layout import LayoutProgram
 from ..pipeline.errors import OutputError, RoomError
+from ..pipeline.layout.hand import apply_hand_edits
 from ..pipeline.layout.overlay import draw_outlines
 from ..pipeline.memory import Memory, dump_memory
 from ..pipeline.program.assemble import assemble
-from ..pipeline.program.lines import parse_layout
+from ..pipeline.program.lines import parse_layout, print_layout
 from ..pipeline.report import make_report
 from ..pipeline.run import Run
 
-LONG_SIDE = 1280
+LONG_SIDE = 1120
 Write = Callable[[Path], Any]
 
 
@@ -40,7 +41,8 @@ def write_outputs(run: Run, folder: Path) -> list[Path]:
     backend = run.backend
     if not backend.program_text():
         # A finished run that was resumed from its memory alone has nothing in the scene.
-        backend.build(program.text)
+        layout, _ = apply_hand_edits(parse_layout(program.text), run.hand_edits(), program.hand_edits)
+        backend.build(print_layout(layout))
     text = backend.program_text() or program.text
     document = backend.scene_document(run.picture.name, calibration.camera)
     top = backend.render(calibration.camera, LONG_SIDE, labels=False)

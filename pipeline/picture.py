@@ -61,12 +61,22 @@ class ReferencePicture:
         image.load()
         return image.convert("RGB")
 
+    @cached_property
+    def _model_image(self) -> Image.Image:
+        return _shrunk(self._image, MODEL_LONG_SIDE)
+
+    @cached_property
+    def _model_data(self) -> bytes:
+        return encode_for_model(self._model_image)
+
     def pixels(self) -> NDArray[np.uint8]:
         """A copy of the picture's pixels, shape (height, width, 3), sRGB 0-255, first row at the top."""
         return np.array(self._image, dtype=np.uint8)
 
     def for_model(self, long_side: int = MODEL_LONG_SIDE) -> bytes:
         """The picture as a model is sent it: at most `long_side` pixels, never enlarged, PNG or JPEG bytes."""
+        if long_side == MODEL_LONG_SIDE:
+            return self._model_data
         return encode_for_model(_shrunk(self._image, long_side))
 
     def crop(self, box: ImageBox, margin: float = 0.05, long_side: int = MODEL_LONG_SIDE) -> bytes:
@@ -97,7 +107,8 @@ class ReferencePicture:
         Args:
             boxes: (label, box) pairs; boxes in 0-1000 of the picture's width and height.
         """
-        image = _shrunk(self._image, long_side).copy()
+        model_size = long_side == MODEL_LONG_SIDE
+        image = (self._model_image if model_size else _shrunk(self._image, long_side)).copy()
         draw_boxes(image, boxes)
         return encode_for_model(image)
 
@@ -151,11 +162,21 @@ def encode_for_model(image: Image.Image) -> bytes:
     """
     sample = image.resize((_SAMPLE, _SAMPLE), Image.Resampling.NEAREST)
     flat = sample.getcolors(_FLAT_COLOURS) is not None
-    if flat:
+    if flat and not _surely_large(image):
         lossless = _encoded(image, "PNG")
         if len(lossless) <= _LOSSLESS_BYTES:
             return lossless
     return _encoded(image, "JPEG", quality=92)
+
+
+def _surely_large(image: Image.Image) -> bool:
+    """Whether a few bands of the image tell that its PNG is far over the limit, so that it need not be made."""
+    height = image.height // 64
+    if height < 4:
+        return False
+    bands = [image.crop((0, top, image.width, top + height)) for top in range(4 * height, 61 * height, 8 * height)]
+    part = sum(len(_encoded(band, "PNG")) for band in bands)
+    return part * image.height / (len(bands) * height) > 2 * _LOSSLESS_BYTES
 
 
 def _refuse_tiny(image: Image.Image, name: str) -> None:

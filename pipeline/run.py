@@ -136,10 +136,16 @@ class Run:
         return session.report()
 
     def run_all(self, stages: Sequence[Stage] | None = None) -> list[StageReport]:
-        """Run every stage that is not done, in order."""
-        done = []
+        """Run every stage that is not done, in order.
+
+        Raises:
+            Cancelled: the run was stopped, also between two stages; else as `run_stage`.
+        """
+        done: list[StageReport] = []
         for stage in stages if stages is not None else all_stages():
             if self.status(stage) != "done":
+                if done and self.cancel.is_set():
+                    raise Cancelled
                 done.append(self.run_stage(stage))
         return done
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from ..artifacts.analysis import ArchitectureItem, Calibration, DetectedObject, Finding, ObjectResidual, SceneAnalysis
 from ..artifacts.camera import CameraModel
@@ -14,6 +15,8 @@ from ..geometry.footprint import image_box_of
 from ..layout.walls import NAMES
 
 ASPECT_LIMIT = 0.08
+LEAST_TURN = 2.0
+"""Less than this many degrees between the picture and the walls is a matter of pointing at corners."""
 
 
 def calibrate(
@@ -42,6 +45,11 @@ def calibrate(
         width = math.sqrt(said_width * said_depth * aspect)
         fit = _fit(analysis, width, height)
         extent = _extent(fit.floor)
+    elif wall_height is None:
+        # The model judged the walls by the same yardstick as everything else.
+        height *= math.sqrt(extent[0] * extent[1] / (said_width * said_depth))
+        fit = _fit(analysis, width, height)
+        extent = _extent(fit.floor)
     if abs(math.log(aspect * said_depth / said_width)) > ASPECT_LIMIT:
         message = (
             f"The stated size {said_width:.2f} x {said_depth:.2f} m does not fit the picture's proportions; "
@@ -49,7 +57,7 @@ def calibrate(
         )
         findings.append(Finding(about="room", message=message, severity="warning"))
     scale = (extent[0] / said_width, extent[1] / said_depth)
-    aligned = _aligned(analysis, fit, scale, height)
+    aligned = _aligned(_turned(analysis, fit.camera, scale), fit, scale, height)
     calibration = Calibration(
         camera=fit.camera,
         floor=fit.floor,
@@ -80,6 +88,36 @@ def _fit(analysis: SceneAnalysis, width: float, height: float) -> CameraFit:
     kind: Kind | None = "orthographic" if flat else None if analysis.wall_top_polygon else "perspective"
     tops = None if flat else analysis.wall_top_polygon
     return fit_camera(analysis.image_size, analysis.floor_polygon, width, tops, height, kind)
+
+
+def _turned(analysis: SceneAnalysis, camera: CameraModel, scale: tuple[float, float]) -> SceneAnalysis:
+    """The analysis in the fitted floor's directions.
+
+    A room that is a little askew in the picture is squared by the fit. A model may have measured along the picture or
+    along the walls; the picture boxes tell which.
+    """
+    # The picture's right-hand direction on the floor is the camera's own x axis.
+    turn = math.degrees(math.atan2(camera.matrix[4], camera.matrix[0]))
+    if abs(turn) < LEAST_TURN:
+        return analysis
+    cos, sin = math.cos(math.radians(turn)), math.sin(math.radians(turn))
+
+    def spun(point: Sequence[float]) -> Metres2:
+        return point[0] * cos - point[1] * sin, point[0] * sin + point[1] * cos
+
+    def agreement(objects: Sequence[DetectedObject]) -> float:
+        return sum(r.iou for o in objects if (r := residual(_scaled_object(o, scale), camera)) is not None)
+
+    objects = [
+        o.model_copy(update={"centre": (*spun(o.centre), o.centre[2]), "yaw": (o.yaw + turn) % 360.0})
+        for o in analysis.objects
+    ]
+    if agreement(objects) <= agreement(analysis.objects):
+        return analysis
+    architecture = [a.model_copy(update={"start": spun(a.start), "end": spun(a.end)}) for a in analysis.architecture]
+    message = f"The room is turned by {-turn:.0f} degrees in the picture; its objects were turned back with it."
+    findings = [*analysis.findings, Finding(about="room", message=message)]
+    return analysis.model_copy(update={"objects": objects, "architecture": architecture, "findings": findings})
 
 
 def _extent(floor: list[Metres2]) -> tuple[float, float]:

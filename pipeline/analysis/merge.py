@@ -6,7 +6,7 @@ from __future__ import annotations
 from ..artifacts.analysis import DetectedObject, Finding, SceneAnalysis
 from ..artifacts.common import ImageBox
 from ..artifacts.replies import BoxReply, CorrectionReply, MissedReply, SecondLookReply
-from .clean import MAX_OBJECTS, clean_box, clean_object, facing_yaw, fix_parents
+from .clean import MAX_OBJECTS, SIDE_NAMES, clean_box, clean_object, facing_yaw, fix_parents
 
 SAME_BOX = 0.6
 BOX_CORRECTED = "corrected box"
@@ -35,6 +35,7 @@ def merge_second_look(analysis: SceneAnalysis, reply: SecondLookReply, crops: li
     findings = list(analysis.findings)
     objects = _corrected(list(analysis.objects), reply.corrections, findings)
     taken = {o.id for o in objects} | {a.id for a in analysis.architecture}
+    named: dict[str, str] = {}
     for missed in reply.missed:
         if len(objects) >= MAX_OBJECTS:
             findings.append(Finding(about="objects", message=f"More than {MAX_OBJECTS} objects; the rest is left out."))
@@ -46,9 +47,17 @@ def merge_second_look(analysis: SceneAnalysis, reply: SecondLookReply, crops: li
         if twin is not None:
             findings.append(Finding(about=found.id, message=f"Seen again in the second look; it is {twin.id}."))
             taken.discard(found.id)
+            named.setdefault(missed.id, twin.id)
             continue
+        named.setdefault(missed.id, found.id)
         objects.append(found)
-    walls = {a.id for a in analysis.architecture} | {"left", "right", "top", "bottom"}
+    # A parent is named as the answer called it, which may be a twin of something found before.
+    known = taken | SIDE_NAMES
+    objects = [
+        o if o.parent is None or o.parent in known else o.model_copy(update={"parent": named.get(o.parent, o.parent)})
+        for o in objects
+    ]
+    walls = {a.id for a in analysis.architecture} | SIDE_NAMES
     return analysis.model_copy(update={"objects": fix_parents(objects, walls, findings), "findings": findings})
 
 

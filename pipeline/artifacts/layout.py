@@ -198,6 +198,7 @@ class LayoutProgram(Artifact):
         stage: which stage wrote it.
         best: number of the iteration that was kept.
         ledger: from stage 4 on, one entry for each detected object.
+        hand_edits: how many of the artist's edits, from the first on, are in the text.
     """
 
     text: str
@@ -207,3 +208,4 @@ class LayoutProgram(Artifact):
     iterations: list[Iteration] = []
     ledger: list[LedgerEntry] = []
     findings: list[Finding] = []
+    hand_edits: int = 0

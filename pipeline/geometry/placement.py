@@ -29,6 +29,13 @@ from .polygon import (
 TOUCH = 1e-6  # metres: footprints closer than this touch, they do not overlap
 
 
+EFFORT = 300_000
+"""Most pairs of rectangles that a separation looks at, in each of its two steps; beyond it, overlaps may stay."""
+MIN_ROUNDS = 4
+MOST_TRIALS = 200
+"""Places that the search for a free one usually tries."""
+
+
 class Rect(NamedTuple):
     """An oriented rectangle on the floor."""
 
@@ -221,7 +228,8 @@ def separate(
     state = _Crowd(start, weights, fixed, floor, allowed_pairs, max_move)
     best, best_score = list(start), state.score(start)
     current = list(start)
-    for _ in range(iterations):
+    rounds = min(iterations, max(MIN_ROUNDS, EFFORT // max(1, len(state.pairs))))
+    for _ in range(rounds):
         if best_score <= TOUCH or not state.relax(current):
             break
         score = state.score(current)
@@ -295,11 +303,17 @@ class _Crowd:
     def relocate(self, rects: list[Rect]) -> list[Rect]:
         """Give each that still overlaps, lightest first, the nearest free place, if there is one."""
         result = list(rects)
+        around: list[list[int]] = [[] for _ in rects]
+        for a, b in self.pairs:
+            around[a].append(b)
+            around[b].append(a)
+        effort = EFFORT
         for i in sorted(range(len(rects)), key=lambda i: (-self.give[i], i)):
-            if self.give[i] == 0:
+            if self.give[i] == 0 or effort <= 0:
                 continue
-            others = [result[b if a == i else a] for a, b in self.pairs if i in (a, b)]
+            others = [result[j] for j in around[i]]
             if any(penetration(result[i], other) for other in others):
+                effort -= MOST_TRIALS * len(others)
                 free = nearest_free(self.start[i], others, self.floor, self.max_move)
                 result[i] = free or result[i]
         return result if self.score(result) <= self.score(rects) else rects

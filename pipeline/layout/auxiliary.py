@@ -14,7 +14,6 @@ from ..artifacts.layout import Layout, ProxyLine, WallLine
 from ..geometry.camera import GeometryError
 from ..geometry.footprint import lift_on_wall
 from ..geometry.polygon import overlap_fraction, rectangle_corners
-from .fuse import straighten
 from .initial import proxy_of
 from .score import corners
 from .walls import NAMES, along, point_on
@@ -106,8 +105,8 @@ def on_wall(
     foot = point_on(wall, spot)
     nx, ny = -(wall.end[1] - wall.start[1]) / length * inward, (wall.end[0] - wall.start[0]) / length * inward
     off = depth / 2 + (wall.thickness / 2 if wall.partition else 0.0) + 0.002
-    # Facing the room: local -Y points along the wall's inward normal.
-    yaw = straighten(math.degrees(math.atan2(nx, -ny)))
+    # Facing the room: local -Y points along the wall's inward normal, also where the wall runs askew.
+    yaw = round(math.degrees(math.atan2(nx, -ny)), 4) % 360.0
     proxy = ProxyLine(
         id=item.id,
         category=item.category,
@@ -184,7 +183,7 @@ def order_by_depth(items: Sequence[DetectedObject]) -> list[DetectedObject]:
 
     def level(item: DetectedObject) -> int:
         steps, parent = 0, item.parent
-        while parent in by_id and steps < 20:
+        while parent in by_id and steps < len(by_id):
             steps, parent = steps + 1, by_id[parent].parent
         return steps
 

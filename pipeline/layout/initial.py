@@ -31,6 +31,10 @@ class Evidence:
         """The same evidence with one object added or replaced."""
         return Evidence({**self.objects, item.id: item})
 
+    def without(self, identifier: str) -> Evidence:
+        """The same evidence without one object."""
+        return Evidence({i: o for i, o in self.objects.items() if i != identifier})
+
 
 def is_major(item: DetectedObject) -> bool:
     """Whether stage 3 places it: what stands on the floor and defines the layout."""
@@ -69,8 +73,10 @@ def proxy_of(
     fused, findings = fuse(item, calibration.camera, side, base)
     width, depth, height = (max(MIN_SIDE, v) if i < 2 else max(0.005, v) for i, v in enumerate(fused.size))
     top = calibration.height * MAX_HEIGHT_SHARE
-    if base + height > top and base < top:
-        height = top - base
+    if base + height > top:
+        # What stands on something as high as the ceiling has no room above it: it ends at the ceiling all the same.
+        base = base if base < top - 0.005 else max(0.0, top - height)
+        height = min(height, top - base)
     proxy = ProxyLine(
         id=item.id,
         category=item.category,

@@ -66,12 +66,13 @@ def _one(
     if asked.op == "remove":
         if item.confidence >= SURE:
             return Finding(about=asked.id, message="The critic wants to remove it, but it was clearly seen.")
-        return LayoutEdit(op="remove", id=asked.id, reason=asked.reason[:160]), evidence
+        return LayoutEdit(op="remove", id=asked.id, reason=asked.reason[:160]), evidence.without(asked.id)
     if asked.op == "recategorise":
-        if not asked.category:
+        category = (asked.category or "").strip()[:60]
+        if not category:
             return Finding(about=asked.id, message="A new category was announced but not given.")
-        edit = LayoutEdit(op="recategorise", id=asked.id, category=asked.category[:60], reason=asked.reason[:160])
-        return edit, evidence
+        edit = LayoutEdit(op="recategorise", id=asked.id, category=category, reason=asked.reason[:160])
+        return edit, evidence.with_object(item.model_copy(update={"category": category}))
     if asked.op == "turn":
         yaw = facing_yaw(asked.facing or "none", asked.yaw_deg if asked.yaw_deg is not None else proxy.yaw)
         if abs((yaw - proxy.yaw + 180) % 360 - 180) < 3:
@@ -112,7 +113,8 @@ def _add(
     asked: EditReply, layout: Layout, evidence: Evidence, calibration: Calibration
 ) -> tuple[LayoutEdit, Evidence] | Finding:
     box = clean_box(asked.box)
-    if box is None or asked.size_m is None or not asked.category:
+    category = (asked.category or "").strip()[:60]
+    if box is None or asked.size_m is None or not category:
         return Finding(about=asked.id, message="The critic wants to add something without box, size or category.")
     size = tuple(max(0.02, min(10.0, abs(v))) for v in (asked.size_m.width, asked.size_m.depth, asked.size_m.height))
     known = next((o for o in evidence.objects.values() if o.box is not None and o.box.iou(box) > 0.5), None)
@@ -124,11 +126,11 @@ def _add(
     except GeometryError as error:
         return Finding(about=asked.id, message=f"What the critic adds cannot be placed: {error.message}")
     cut = [line.id for lines in (layout.doors, layout.windows, layout.openings) for line in lines]
-    taken = {*evidence.objects, *(w.id for w in layout.walls), *cut}
-    name = clean_id(asked.id or asked.category, taken, "object")
+    taken = {*evidence.objects, *(w.id for w in layout.walls), *(p.id for p in layout.proxies), *cut}
+    name = clean_id(asked.id or category, taken, "object")
     item = DetectedObject(
         id=name,
-        category=asked.category[:60],
+        category=category,
         box=box,
         centre=(lifted.centre[0], lifted.centre[1], size[2] / 2),
         size=(size[0], size[1], size[2]),
@@ -172,7 +174,10 @@ def revise(layout: Layout, sanitised: Sanitised, calibration: Calibration) -> La
         if proxy.id in removed:
             continue
         if proxy.id in moved:
-            proxy = proxy_of(sanitised.evidence.objects[proxy.id], calibration, proxy.centre[2] - proxy.size[2] / 2)[0]
+            base = proxy.centre[2] - proxy.size[2] / 2
+            again = proxy_of(sanitised.evidence.objects[proxy.id], calibration, base)[0]
+            # The detected parent may be nothing that stage 3 places, such as the rug below a chair.
+            proxy = again.model_copy(update={"parent": proxy.parent})
         if proxy.id in renamed:
             proxy = proxy.model_copy(update={"category": renamed[proxy.id]})
         proxies.append(proxy)

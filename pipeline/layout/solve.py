@@ -20,6 +20,8 @@ from .trim import trim
 SNAP = 0.07
 """A floor proxy nearer to a wall than this (or as deep in it) stands flush at it, metres."""
 MAX_MOVE = 0.8
+MINOR_MOVE = 0.5
+"""Farthest that a major and a minor thing are moved, metres."""
 REPORT = 0.03
 FURNITURE_OVERLAP = 0.02
 
@@ -75,12 +77,16 @@ def settle_minor(proxy: ProxyLine, layout: Layout, locked: frozenset[str]) -> Pr
         return proxy
     rect = _settled(_rect(proxy), proxy, layout)
     near = [p for p in layout.proxies if p.placement == "floor" and not may_share(p, proxy, frozenset())]
-    others = [_rect(p) for p in near]
+    # What it cannot reach need not be looked at; a room may hold hundreds of things.
+    reach = math.hypot(rect.width, rect.depth) / 2 + MINOR_MOVE + 0.01
+    others = [
+        r for p in near if math.dist((r := _rect(p))[:2], (rect.x, rect.y)) < reach + math.hypot(r.width, r.depth) / 2
+    ]
     if any(overlap_fraction(rect.corners(), o.corners()) > FURNITURE_OVERLAP for o in others):
         rects = [rect, *others]
         fixed = set(range(1, len(rects)))
         among_majors = [(a, b) for a in fixed for b in fixed if a < b]
-        moves = separate(rects, None, fixed, layout.room.floor, among_majors, 0.5)
+        moves = separate(rects, None, fixed, layout.room.floor, among_majors, MINOR_MOVE)
         rect = rect.moved(*moves[0])
     return _at(proxy, rect)
 

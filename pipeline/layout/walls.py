@@ -93,6 +93,8 @@ def shell(
     windows: list[WindowLine] = []
     openings: list[OpeningLine] = []
     for item in analysis.architecture:
+        if item.kind == "builtin":
+            findings.append(Finding(about=item.id, message="Built-in parts of the room are not built; it is left out."))
         if item.kind not in ("door", "window", "opening"):
             continue
         wall = wall_for(item, walls)
@@ -114,9 +116,9 @@ def shell(
             top = min(item.height, height - 0.05 - sill)
             windows.append(WindowLine(id=item.id, wall=wall.id, start=start, end=end, sill=sill, height=top))
         else:
-            openings.append(
-                OpeningLine(id=item.id, wall=wall.id, start=start, end=end, height=min(item.height, height))
-            )
+            sill = min(item.sill, height - 0.5)
+            top = min(item.height, height - sill)
+            openings.append(OpeningLine(id=item.id, wall=wall.id, start=start, end=end, sill=sill, height=top))
     return room, walls, doors, windows, openings, findings
 
 

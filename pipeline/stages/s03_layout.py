@@ -12,9 +12,9 @@ from typing import Any
 
 from ..artifacts.analysis import Calibration, Finding, SceneAnalysis
 from ..artifacts.graph import SceneGraph
-from ..artifacts.layout import Iteration, Layout, LayoutProgram, Score
+from ..artifacts.layout import Iteration, Layout, LayoutEdit, LayoutProgram, Score
 from ..artifacts.replies import CritiqueReply
-from ..layout.hand import apply_hand_edits
+from ..layout.hand import apply_hand_edits, name_now, place_edited
 from ..layout.initial import Evidence, first_layout, is_major
 from ..layout.overlay import draw_outlines
 from ..layout.placed import tucked_pairs
@@ -30,6 +30,8 @@ T_MAX = 5
 TARGET = 0.97
 GAIN = 0.002
 """A revision that brings less than this is no better."""
+UNMEASURED = frozenset({"turn", "recategorise", "remove"})
+"""Boxes look the same from above whichever way they face and whatever they are called: here the critic's word counts."""
 
 
 @dataclass(frozen=True)
@@ -40,6 +42,7 @@ class _State:
     layout: Layout
     evidence: Evidence
     score: Score
+    notes: list[Finding] = field(default_factory=list)
 
 
 @dataclass
@@ -52,20 +55,22 @@ class _Loop:
     t_max: int
     target: float
     iterations: list[Iteration] = field(default_factory=list)
-    findings: list[Finding] = field(default_factory=list)
     best: _State | None = None
 
     def run(self, layout: Layout, evidence: Evidence) -> Generator[Wish, Any, _State]:
         """Render, measure, critique and revise; returns the best state."""
+        layout = apply_hand_edits(layout, self.view.hand_edits)[0]
+        asked: list[LayoutEdit] = []
         for number in range(self.t_max + 1):
-            layout = self._solved(layout, evidence)
+            layout, notes = self._solved(layout, evidence)
             text = print_layout(layout)
             yield Tell(f"Layout, round {number + 1}", number + 1, self.t_max + 1)
             yield Build(text)
             score, problems = measure(layout, self.calibration.camera, self._expected(layout, evidence))
-            state = _State(number, layout, evidence, score)
-            better = self._better(state)
-            if better:
+            state = _State(number, layout, evidence, score, notes)
+            gain = self._gain(state)
+            better = gain > GAIN
+            if better or (gain >= -GAIN and any(e.op in UNMEASURED for e in asked)):
                 self.best = state
             if not better or number == self.t_max:
                 self._note(state, text, None, None)
@@ -73,35 +78,46 @@ class _Loop:
             rendered = yield Render(self.calibration.camera, labels=True)
             [reply] = yield Ask((self._request(state, rendered, problems),))
             wanted = sanitise(reply, layout, evidence, self.calibration, self.view.locked)
-            state = _State(number, layout, evidence, with_model(score, reply.score))
+            state = _State(number, layout, evidence, with_model(score, reply.score), notes)
             self.best = state
             self._note(state, text, reply, wanted)
             if not wanted.edits or state.score.total >= self.target:
                 break
-            layout, evidence = revise(layout, wanted, self.calibration), wanted.evidence
+            layout, evidence, asked = self._revised(layout, wanted), wanted.evidence, wanted.edits
         assert self.best is not None
+        best_text = print_layout(self.best.layout)
+        if best_text != text:
+            # The last round was no better: the scene shows what is kept.
+            yield Build(best_text)
         return self.best
 
-    def _better(self, state: _State) -> bool:
-        """Whether a layout is better than the best so far, both measured against what is known by now."""
+    def _gain(self, state: _State) -> float:
+        """How much better a layout is than the best so far, both measured against what is known by now."""
         if self.best is None:
-            return True
+            return 1.0
         before, _ = measure(self.best.layout, self.calibration.camera, self._expected(self.best.layout, state.evidence))
-        return state.score.measured > before.measured + GAIN
+        return state.score.measured - before.measured
 
-    def _solved(self, layout: Layout, evidence: Evidence) -> Layout:
-        layout = apply_hand_edits(layout, self.view.hand_edits)[0]
+    def _revised(self, layout: Layout, wanted: Sanitised) -> Layout:
+        """The layout after the critic's edits; what the critic adds again is edited again as the artist edited it."""
+        revised = revise(layout, wanted, self.calibration)
+        before = {p.id for p in layout.proxies}
+        result = revised.model_copy(update={"proxies": [p for p in revised.proxies if p.id in before]})
+        for proxy in revised.proxies:
+            if proxy.id not in before:
+                result = place_edited(result, proxy, self.view.hand_edits)[0]
+        return result
+
+    def _solved(self, layout: Layout, evidence: Evidence) -> tuple[Layout, list[Finding]]:
         confidence = {i: o.confidence for i, o in evidence.objects.items()}
-        solved, notes = solve(layout, tucked_pairs(self.graph.edges, layout.proxies), self.view.locked, confidence)
-        self.findings = [*(f for f in self.findings if f.severity != "note"), *notes]
-        return solved
+        return solve(layout, tucked_pairs(self.graph.edges, layout.proxies), self.view.locked, confidence)
 
     def _expected(self, layout: Layout, evidence: Evidence) -> Expected:
         ids = [o.id for o in evidence.objects.values() if is_major(o)]
-        gone = {e.id for e in self.view.hand_edits if e.op == "remove"}
         boxes = {i: b for i in ids if (b := evidence.box(i)) is not None and i not in self.view.locked}
         tucked = tucked_pairs(self.graph.edges, layout.proxies)
-        return Expected(tuple(i for i in ids if i not in gone), boxes, self.graph.edges, tucked)
+        names = (name_now(self.view.hand_edits, i) for i in ids)
+        return Expected(tuple(name for name in names if name is not None), boxes, self.graph.edges, tucked)
 
     def _request(self, state: _State, rendered: bytes, problems: list[str]) -> Request:
         picture = self.view.reference.for_model()
@@ -146,7 +162,8 @@ def run(view: View) -> StageRun:
         score=best.score,
         best=best.number,
         iterations=loop.iterations,
-        findings=[*findings, *loop.findings],
+        findings=[*findings, *best.notes],
+        hand_edits=len(view.hand_edits),
     )
     return [program]
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 
 from ..analysis.look import numbered_boxes
 from ..artifacts.analysis import Calibration, DetectedObject, Finding, SceneAnalysis
-from ..artifacts.layout import Layout, LayoutProgram, LedgerEntry, ProxyLine
+from ..artifacts.layout import Layout, LayoutEdit, LayoutProgram, LedgerEntry, ProxyLine
 from ..artifacts.replies import AuxiliaryPlacementReply, AuxiliaryReply
 from ..layout import auxiliary as place
-from ..layout.hand import apply_hand_edits
+from ..layout.hand import apply_hand_edits, name_now, place_edited
 from ..layout.initial import is_major
 from ..layout.solve import settle_minor
 from ..program.lines import parse_layout, print_layout
@@ -27,12 +27,16 @@ class _Placing:
     layout: Layout
     calibration: Calibration
     locked: frozenset[str]
+    edits: tuple[LayoutEdit, ...] = ()
     ledger: dict[str, LedgerEntry] = field(default_factory=dict)
     findings: list[Finding] = field(default_factory=list)
 
     def add(self, item: DetectedObject) -> bool:
         """Place one object; False when what it stands on or hangs from is not known."""
-        result = self._proxy(item)
+        if name_now(self.edits, item.id) is None:
+            self.note_placed(item)
+            return True
+        result = self._proxy(item.model_copy(update={"parent": self._parent(item.parent)}))
         if result is None:
             return False
         proxy, notes = result
@@ -44,9 +48,24 @@ class _Placing:
             self.findings.append(
                 Finding(about=item.id, message=f"It shares its place with {cover}.", severity="warning")
             )
-        self.layout = self.layout.model_copy(update={"proxies": [*self.layout.proxies, proxy]})
-        self.note(item, "placed", "")
+        self.layout, notes = place_edited(self.layout, proxy, self.edits)
+        self.findings += notes
+        self.note_placed(item)
         return True
+
+    def _parent(self, identifier: str | None) -> str | None:
+        """What a detected parent is called by now."""
+        return identifier if identifier is None else name_now(self.edits, identifier)
+
+    def note_placed(self, item: DetectedObject) -> None:
+        """Write the line of an object that is placed, unless the artist or the layout loop took it out."""
+        name = name_now(self.edits, item.id)
+        if name is None:
+            self.note(item, "dropped", "removed by hand")
+        elif self.layout.proxy(name) is None:
+            self.note(item, "dropped", "the layout loop took it out" if is_major(item) else "its id was taken by hand")
+        else:
+            self.note(item, "placed", "")
 
     def note(self, item: DetectedObject, state: str, reason: str) -> None:
         """Write one line of the ledger."""
@@ -67,29 +86,33 @@ def run(view: View) -> StageRun:
     """Write the `LayoutProgram` with everything placed, and its ledger; one request, and only when something is open."""
     analysis, calibration = view.need(SceneAnalysis), view.need(Calibration)
     before = view.need(LayoutProgram)
-    layout = parse_layout(before.text)
-    placing = _Placing(layout, calibration, view.locked)
-    present = {p.id for p in layout.proxies}
+    layout, early = apply_hand_edits(parse_layout(before.text), view.hand_edits, before.hand_edits)
+    placing = _Placing(layout, calibration, view.locked, view.hand_edits)
     for item in analysis.objects:
-        if item.id in present:
-            placing.note(item, "placed", "")
-    waiting = [o for o in place.order_by_depth(analysis.objects) if o.id not in present]
-    yield Tell("Placing what stands on, hangs from or lies on something", 1, 2)
-    opened = [o for o in waiting if is_major(o) or not placing.add(o)]
-    asked = [o for o in opened if not is_major(o)]
-    for item in opened:
         if is_major(item):
-            placing.note(item, "dropped", "the layout loop took it out")
+            placing.note_placed(item)
+    yield Tell("Placing what stands on, hangs from or lies on something", 1, 2)
+    waiting = [o for o in place.order_by_depth(analysis.objects) if not is_major(o)]
+    asked = [o for o in waiting if not placing.add(o)]
     if asked:
         [reply] = yield Ask((_request(view, asked, placing.layout),))
         _place_answered(placing, asked, reply)
-    layout = apply_hand_edits(placing.layout, view.hand_edits)[0]
+    # What the artist put on something that was placed only now could not be added before.
+    layout, late = apply_hand_edits(placing.layout, view.hand_edits, len(view.hand_edits))
+    unusable = [f for f in early if f.severity != "warning" or layout.proxy(f.about) is None]
     text = print_layout(layout)
     yield Tell("Building the room", 2, 2)
     yield Build(text)
     ledger = [placing.ledger[o.id] for o in analysis.objects]
     program = before.model_copy(
-        update={"text": text, "stage": ID, "ledger": ledger, "findings": placing.findings, "iterations": []}
+        update={
+            "text": text,
+            "stage": ID,
+            "ledger": ledger,
+            "findings": [*placing.findings, *unusable, *(f for f in late if f not in unusable)],
+            "iterations": [],
+            "hand_edits": len(view.hand_edits),
+        }
     )
     return [program]
 
@@ -97,13 +120,12 @@ def run(view: View) -> StageRun:
 def _place_answered(placing: _Placing, asked: list[DetectedObject], reply: AuxiliaryReply) -> None:
     """Place what the model decided; what stays open is deferred to the stage that finds surfaces."""
     answers = {a.id: a for a in reply.placements}
-    for item in asked:
+    # An answer may name another open thing as parent, so that one comes first.
+    for item in place.order_by_depth([_answered(o, answers[o.id]) if o.id in answers else o for o in asked]):
         answer = answers.get(item.id)
-        if answer is None:
-            placing.note(item, "deferred", "what carries it is not known yet")
-        elif answer.drop and item.confidence < 0.9:
+        if answer is not None and answer.drop and item.confidence < 0.9:
             placing.note(item, "dropped", answer.reason[:160] or "the second look saw nothing there")
-        elif not placing.add(_answered(item, answer)):
+        elif not placing.add(item):
             placing.note(item, "deferred", "what carries it is not known yet")
 
 

@@ -142,3 +142,16 @@ def test_second_look_corrects_and_takes_back() -> None:
 def test_a_box_of_the_whole_picture_stays() -> None:
     box = BoxReply(x_min=1, y_min=2, x_max=3, y_max=4)
     assert to_whole_picture(box, None) is box
+
+
+def test_second_look_parents_are_found_by_the_names_of_the_answer() -> None:
+    first = clean_analysis(reply(thing("chair_1")), (1000, 1000))
+    small = {"x_min": 700, "y_min": 700, "x_max": 720, "y_max": 720}
+    cup = thing("Cup 1", category="cup", parent="Tea Tray", placement="surface", box=small)
+    tray = thing("Tea Tray", category="tray", box=small)
+    twin = thing("seat", category="wooden chair")
+    pillow = thing("pillow", category="pillow", parent="seat", placement="surface", box=small)
+    answer = SecondLookReply.model_validate({"missed": [cup, tray, twin, pillow]})
+    merged = merge_second_look(first, answer, [None])
+    parents = {o.id: o.parent for o in merged.objects}
+    assert parents == {"chair_1": None, "cup_1": "tea_tray", "tea_tray": None, "pillow": "chair_1"}

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import copy
 import json
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import bpy
 import pytest
 from code_as_room.operators import command, outputs
 from code_as_room.pipeline.artifacts.analysis import Finding, SceneAnalysis
@@ -170,23 +168,3 @@ def room(
         "auxiliary": {"placements": []},
     }
     return Room(tmp_path, copy.deepcopy(answers), capsys)
-
-
-@pytest.fixture
-def other_room(room: Room) -> Callable[[str], Path]:
-    """Makes the results of another room of the same picture with only one object in it, as they stand in a folder."""
-
-    def make(kept: str) -> Path:
-        whole = copy.deepcopy(room.answers)
-        room.analysis["objects"] = [room.object(kept)]
-        room.make().finished()
-        room.answers = whole
-        return room.out
-
-    return make
-
-
-@pytest.fixture
-def empty_blender() -> None:
-    """A Blender file with nothing in it."""
-    bpy.ops.wm.read_factory_settings(use_empty=True)

@@ -36,6 +36,14 @@ def test_a_door_without_a_wall_is_reported_not_built(analysis: SceneAnalysis, ca
     assert not doors and findings[0].about == "d"
 
 
+def test_an_opening_keeps_its_sill_and_a_builtin_is_reported(analysis: SceneAnalysis, calibration: Calibration) -> None:
+    hatch = ArchitectureItem(id="h", kind="opening", start=(0, 1.95), end=(1, 1.95), height=1.0, sill=0.9, wall="top")
+    chimney = ArchitectureItem(id="c", kind="builtin", start=(2.0, 1.5), end=(2.0, 1.9), height=2.6)
+    *_, [opening], findings = shell(analysis.model_copy(update={"architecture": [hatch, chimney]}), calibration)
+    assert (opening.sill, opening.height) == (0.9, 1.0)
+    assert [f.about for f in findings] == ["c"]
+
+
 def test_a_partition_that_stops_short_reaches_the_wall(analysis: SceneAnalysis, calibration: Calibration) -> None:
     item = ArchitectureItem(id="p", kind="partition", start=(0.5, 1.8), end=(0.5, 0.2), height=2.6)
     _, walls, *_ = shell(analysis.model_copy(update={"architecture": [item]}), calibration)

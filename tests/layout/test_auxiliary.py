@@ -1,0 +1,42 @@
+"""Stage 4's placements: on walls that run askew, and under the ceiling."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from code_as_room.pipeline.artifacts.analysis import Calibration, DetectedObject
+from code_as_room.pipeline.artifacts.layout import ProxyLine
+from code_as_room.pipeline.layout.auxiliary import on_surface, on_wall, top_of
+from code_as_room.pipeline.layout.walls import along, outer_walls
+
+
+def test_a_picture_lies_flat_on_a_wall_that_runs_askew(calibration: Calibration) -> None:
+    wall = next(
+        w for w in outer_walls([(-2.3, -1.95), (2.3, -1.95), (2.3, 1.65), (-2.3, 1.95)], 2.6) if w.id == "wall_n"
+    )
+    art = DetectedObject(
+        id="art", category="painting", placement="wall", parent="wall_n", box=None, centre=(0.0, 1.8, 1.5),
+        size=(1.2, 0.03, 0.6),
+    )  # fmt: skip
+    placed = on_wall(art, [wall], calibration)
+    assert placed is not None
+    proxy = placed[0]
+    angle = math.radians(proxy.yaw)
+    for side in (-0.6, 0.6):
+        back = (
+            proxy.centre[0] + side * math.cos(angle) - 0.015 * math.sin(angle),
+            proxy.centre[1] + side * math.sin(angle) + 0.015 * math.cos(angle),
+        )
+        assert along(wall, back)[1] == pytest.approx(0.002, abs=1e-3)
+
+
+def test_what_stands_on_a_cupboard_as_high_as_the_room_stays_below_the_ceiling(calibration: Calibration) -> None:
+    cupboard = ProxyLine(id="cupboard", category="wardrobe", centre=(2.0, -0.6, 1.3), size=(1.4, 0.6, 2.6))
+    box = DetectedObject(
+        id="b", category="box", placement="surface", parent="cupboard", box=None, centre=(2.0, -0.6, 2.8),
+        size=(0.4, 0.4, 0.4),
+    )  # fmt: skip
+    placed = on_surface(box, {"cupboard": cupboard}, calibration)
+    assert placed is not None
+    assert top_of(placed[0]) <= calibration.height + 1e-9 and placed[0].size[2] == pytest.approx(0.4)
