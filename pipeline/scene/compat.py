@@ -10,6 +10,7 @@ from __future__ import annotations
 import contextlib
 import os
 import sys
+import tempfile
 from collections.abc import Iterator
 from typing import Any
 
@@ -17,6 +18,8 @@ import bpy
 
 from .nodes import ensure_node_tree
 
+_HARMLESS = b"EGL Error (0x3009)"
+"""Blender tries a window surface that a surfaceless driver does not have, then goes on without."""
 __all__ = ["eevee_id", "ensure_gpu", "ensure_node_tree", "quiet", "set_png"]
 
 
@@ -40,24 +43,30 @@ def set_png(settings: Any) -> None:
 
 @contextlib.contextmanager
 def quiet() -> Iterator[None]:
-    """Keep a background Blender from printing a line for each render and each file that it saves.
+    """Keep a background Blender from printing a line for each render, each file saved, and each harmless EGL complaint.
 
     All versions write these straight to the process's output, past Python, and 5.0 and 4.5 have different switches
-    for some of them only. In a window nothing is changed.
+    for some of them only. Other lines on standard error are passed on. In a window nothing is changed.
     """
     if not bpy.app.background:
         yield
         return
     sys.stdout.flush()
-    kept = os.dup(1)
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    try:
-        os.dup2(nowhere, 1)
-        yield
-    finally:
-        os.dup2(kept, 1)
-        os.close(kept)
-        os.close(nowhere)
+    sys.stderr.flush()
+    with open(os.devnull, "wb") as nowhere, tempfile.TemporaryFile() as errors:
+        kept = os.dup(1), os.dup(2)
+        try:
+            os.dup2(nowhere.fileno(), 1)
+            os.dup2(errors.fileno(), 2)
+            yield
+        finally:
+            for number, descriptor in enumerate(kept, 1):
+                os.dup2(descriptor, number)
+                os.close(descriptor)
+            errors.seek(0)
+            told = b"".join(line for line in errors if not line.startswith(_HARMLESS))
+            if told:
+                os.write(2, told)
 
 
 def ensure_gpu() -> None:
