@@ -270,7 +270,12 @@ def silent_service() -> Iterator[str]:
 def test_control_c_while_a_service_is_silent_ends_the_program(room, silent_service: str, tmp_path: Path) -> None:
     arguments = [str(room.picture), "--out", str(room.out), "--base-url", silent_service, "--model", "m"]
     program = subprocess.Popen(
-        [sys.executable, "-c", CALL, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        [sys.executable, "-c", CALL, *arguments],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        # A test run in the background ignores Ctrl-C, and its children would inherit that.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
     try:
         assert Silent.asked.wait(60)
