@@ -25,7 +25,10 @@ lint: setup
 	MYPYPATH=build/types $(RUN)/mypy -p code_as_room.pipeline -p code_as_room.operators -p code_as_room.panels
 
 benchmark: setup
-	$(RUN)/python -m benchmark.run
+	$(RUN)/python -m benchmark.interpreter
+	$(RUN)/python -m benchmark.stages
+	$(RUN)/code-as-room samples/bedroom/picture.png --replies samples/bedroom/replies --out out/benchmark
+	$(RUN)/python -m benchmark.layout out/benchmark/scene.json samples/bedroom/truth.json out/benchmark/memory.json
 
 test-desktop:
 	$(RUN)/python tests/desktop/run_panel.py --blender "$(BLENDER)"

@@ -16,9 +16,8 @@ from typing import Any, Literal
 
 from pydantic import BaseModel
 
-from .artifacts.analysis import Finding, SceneAnalysis
 from .artifacts.hand import HandEdits
-from .artifacts.layout import LayoutEdit, LayoutProgram
+from .artifacts.layout import LayoutEdit
 from .ask import AskEvent, AskResult, perform_ask
 from .backend import SceneBackend
 from .errors import Cancelled, RoomError
@@ -273,14 +272,3 @@ class StageSession:
             notes=list(result.notes),
         )
         self.run.memory.keep_answer(self.stage.id, result.key, result.text, meta)
-
-
-def findings_of(memory: Memory) -> list[Finding]:
-    """Everything that the current artifacts report, for the panel and the report."""
-    found: list[Finding] = []
-    analysis = memory.latest(SceneAnalysis)
-    program = memory.latest(LayoutProgram)
-    for artifact in (analysis, program):
-        if artifact is not None:
-            found += artifact.findings
-    return found
