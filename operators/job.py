@@ -241,6 +241,8 @@ class Job:
         if error is not None and not isinstance(error, RoomError):
             log.error("A stage failed unexpectedly", exc_info=error)
         try:
+            if error is not None and not self._must_wait():
+                self.run.put_back()
             self.backend.flush()
         except RoomError as problem:
             self.error = self.error or problem

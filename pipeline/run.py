@@ -62,6 +62,7 @@ class Run:
     progress: Progress = lambda what, step, steps: None
     cancel: threading.Event = field(default_factory=threading.Event)
     reports: list[StageReport] = field(default_factory=list)
+    _standing: str = ""
 
     def __post_init__(self) -> None:
         if self.memory.picture_hash and self.memory.picture_hash != self.picture.sha256:
@@ -105,13 +106,23 @@ class Run:
     def take_over_edits(self) -> list[LayoutEdit]:
         """Read the scene back: what was changed by hand goes to memory and into the program. Main thread only."""
         edits = self.backend.read_back()
+        self._standing = self.backend.program_text()
         if not edits:
             return []
         text, _ = patch_text(self.backend.program_text(), edits)
         self.memory.append("artist", HandEdits(edits=edits), EntryMeta(time=now(), model="artist"))
         self.backend.build(text)
+        self._standing = text
         self.backend.save_memory(dump_memory(self.memory))
         return edits
+
+    def put_back(self) -> None:
+        """After a stage that did not end: the room that stood before it stands again. Main thread only.
+
+        Where nothing stood, what the stage built so far stays to be looked at.
+        """
+        if self._standing and self.backend.program_text() != self._standing:
+            self.backend.build(self._standing)
 
     def begin(self, stage: Stage, fresh: bool = False) -> StageSession:
         """Start a stage; hand edits are taken over first. Main thread only.
@@ -129,9 +140,13 @@ class Run:
         Raises:
             RoomError: the stage failed; memory holds every answer that arrived, and the artifacts of earlier stages.
         """
-        session = self.begin(stage)
-        while not session.finished:
-            session.step()
+        try:
+            session = self.begin(stage)
+            while not session.finished:
+                session.step()
+        except BaseException:
+            self.put_back()
+            raise
         return session.report()
 
     def run_all(self, stages: Sequence[Stage] | None = None) -> list[StageReport]:

@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 from code_as_room.pipeline.artifacts.layout import LayoutEdit, LayoutProgram, ProxyLine
+from code_as_room.pipeline.errors import Cancelled
 from code_as_room.pipeline.layout.hand import apply_hand_edits
 from code_as_room.pipeline.program.evaluate import evaluate
 from code_as_room.pipeline.program.lines import parse_layout
@@ -146,3 +147,20 @@ def test_a_layout_that_holds_a_part_of_the_edits_gets_the_rest(run: Run, count: 
     part, _ = apply_hand_edits(layout, edits[:count])
     assert not findings
     assert apply_hand_edits(part, edits, count) == (whole, [])
+
+
+def test_a_stopped_second_run_leaves_the_room_that_stood(run: Run, answers: Any, scene: Any) -> None:
+    run.run_all()
+    scene.edits = [edit("move", "chair", centre=(1.2, -1.3, 0.4))]
+    run.take_over_edits()
+    stood = scene.text
+
+    def stop(prompt: Any) -> dict[str, Any]:
+        run.cancel.set()
+        return {"score": 10, "edits": []}
+
+    answers.by_key["03_critique"] = stop
+    run.memory.settings["notes"] = "once more"
+    with pytest.raises(Cancelled):
+        run.run_all()
+    assert len(scene.built) > 3 and scene.text == stood
