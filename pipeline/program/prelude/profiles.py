@@ -118,11 +118,16 @@ def led(where: str, outline: Floats, path: Floats, loop: bool, radii: list[float
     return placed(where, vertices, outward(vertices, faces), at, smooth)
 
 
+_MOST_POINTS = 2000
+
+
 def frames(path: Floats, loop: bool) -> list[tuple[Floats, Floats, Floats, float]]:
     """At each point of a path: right, up, the direction in which a mitred corner widens, and how much it does.
 
     Frames turn as little as possible from point to point (Bishop frames); on a loop what is left is spread evenly.
     """
+    if len(path) > _MOST_POINTS:
+        raise ValueError(f"a path may have at most {_MOST_POINTS} points: use fewer")
     after = np.roll(path, -1, axis=0) - path
     after /= np.maximum(np.linalg.norm(after, axis=1, keepdims=True), 1e-12)
     before = np.roll(after, 1, axis=0)
