@@ -36,7 +36,7 @@ class Limits:
     operators: int = 100
     blocks: int = 12
     tree_depth: int = 120
-    steps: int = 2_000_000
+    steps: int = 1_300_000
     depth: int = 24
     list_items: int = 100_000
     range_items: int = 1_000_000
