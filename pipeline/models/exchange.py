@@ -86,6 +86,9 @@ def exchange(
     outcome: queue.SimpleQueue[str | Answer | Fault] = queue.SimpleQueue()
     worker = threading.Thread(target=_work, args=(call, limits, leash, outcome), name=THREAD_NAME, daemon=True)
     host = _host(call.url)
+    # Before the thread begins: on a quick machine the request would be out before the loop below looks for the first time.
+    if cancel.is_set():
+        raise Cancelled
     worker.start()
     try:
         while True:
