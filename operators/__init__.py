@@ -15,7 +15,8 @@ _command: Any = None
 def _classes() -> tuple[type, ...]:
     from . import picture_ops, properties, result_ops, stage_ops
 
-    return (*properties.CLASSES, *picture_ops.CLASSES, *stage_ops.CLASSES, *result_ops.CLASSES)
+    modules = (properties, picture_ops, stage_ops, result_ops)
+    return tuple(cls for module in modules for cls in module.CLASSES)
 
 
 def _run_command(argv: list[str]) -> int:

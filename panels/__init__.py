@@ -4,10 +4,18 @@
 from __future__ import annotations
 
 
-def _classes() -> tuple[type, ...]:
-    from . import preferences, sidebar
+def panel_classes() -> tuple[type, ...]:
+    """The panels (and their lists) of the tab "Room"."""
+    from . import calibration, objects, output, reference, stages
 
-    return (*preferences.classes(), *sidebar.CLASSES)
+    modules = (reference, calibration, stages, objects, output)
+    return tuple(cls for module in modules for cls in module.CLASSES)
+
+
+def _classes() -> tuple[type, ...]:
+    from . import preferences
+
+    return (*preferences.classes(), *panel_classes())
 
 
 def register() -> None:

@@ -19,6 +19,7 @@ from pydantic import BaseModel, ValidationError
 
 from .artifacts.analysis import Calibration, SceneAnalysis
 from .artifacts.common import Artifact
+from .artifacts.corrections import Corrections
 from .artifacts.graph import MinorObjects, SceneGraph
 from .artifacts.hand import HandEdits
 from .artifacts.layout import LayoutProgram
@@ -26,7 +27,8 @@ from .errors import MemoryFormatError
 
 FORMAT = "code-as-room/memory/1"
 KINDS: dict[str, type[Artifact]] = {
-    kind.__name__: kind for kind in (SceneAnalysis, Calibration, SceneGraph, MinorObjects, LayoutProgram, HandEdits)
+    kind.__name__: kind
+    for kind in (SceneAnalysis, Calibration, SceneGraph, MinorObjects, LayoutProgram, HandEdits, Corrections)
 }
 _CHUNK = 160
 _TEXT = "~text"

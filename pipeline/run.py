@@ -16,6 +16,7 @@ from typing import Any, Literal
 
 from pydantic import BaseModel
 
+from .artifacts.corrections import Corrections
 from .artifacts.hand import HandEdits
 from .artifacts.layout import LayoutEdit
 from .ask import AskEvent, AskResult, perform_ask
@@ -86,14 +87,19 @@ class Run:
             return "not run"
         return "done" if entry.meta.inputs == self.inputs(stage) else "stale"
 
-    def view(self, stage: Stage) -> View:
-        """The artifacts that a stage declared it reads."""
+    def view(self, stage: Stage, only: frozenset[str] | None = None) -> View:
+        """The artifacts that a stage declared it reads.
+
+        Args:
+            only: ids of the objects that are to be done anew, None for all.
+        """
         artifacts: dict[type[BaseModel], BaseModel] = {}
         for read in stage.reads:
             found = self.memory.latest(read.kind, read.stages or None)
             if found is not None:
                 artifacts[read.kind] = found
-        return View(self.picture, artifacts, dict(self.memory.settings), tuple(self.hand_edits()))
+        corrections = self.memory.latest(Corrections) or Corrections()
+        return View(self.picture, artifacts, dict(self.memory.settings), tuple(self.hand_edits()), corrections, only)
 
     def hand_edits(self) -> list[LayoutEdit]:
         """All edits that the artist made by hand so far, oldest first."""

@@ -132,12 +132,13 @@ class LayoutEdit(Artifact):
 
     Attributes:
         op: move (centre), resize (size), turn (yaw), add (all), remove, recategorise (category), rename (new_id),
-            reparent (placement and parent).
+            reparent (placement and parent), line (the printed layout line that stands from now on for this id: a wall,
+            door, window, opening, light or camera, or "room"; `remove` takes such a line away).
         reason: why, in a few words.
         origin: who asked: "model", "solver", "artist".
     """
 
-    op: Literal["move", "resize", "turn", "add", "remove", "recategorise", "rename", "reparent"]
+    op: Literal["move", "resize", "turn", "add", "remove", "recategorise", "rename", "reparent", "line"]
     id: str
     centre: Metres3 | None = None
     size: Metres3 | None = None
@@ -149,6 +150,7 @@ class LayoutEdit(Artifact):
     salience: Salience | None = None
     shape: Shape | None = None
     new_id: str | None = None
+    line: str | None = None
     reason: str = ""
     origin: Literal["model", "solver", "artist"] = "model"
 

@@ -9,6 +9,7 @@ from typing import TypeVar
 
 from pydantic import BaseModel
 
+from ..artifacts.corrections import Corrections
 from ..artifacts.layout import LayoutEdit
 from ..errors import RoomError
 from ..picture import ReferencePicture
@@ -32,12 +33,16 @@ class View:
     Attributes:
         settings: the artist's numbers and wishes as text ("known_width_m", "wall_height_m", "iterations", "target").
         hand_edits: what the artist changed by hand so far; their objects are locked.
+        corrections: what the artist corrected of the analysis.
+        only: ids of the objects that are to be done anew, everything else is frozen; None for all.
     """
 
     reference: ReferencePicture
     artifacts: Mapping[type[BaseModel], BaseModel] = field(default_factory=dict)
     settings: Mapping[str, str] = field(default_factory=dict)
     hand_edits: tuple[LayoutEdit, ...] = ()
+    corrections: Corrections = field(default_factory=Corrections)
+    only: frozenset[str] | None = None
 
     def need(self, kind: type[A]) -> A:
         """The artifact of this type; RoomError names the missing step when an earlier stage has not run."""
@@ -58,8 +63,10 @@ class View:
 
     @property
     def locked(self) -> frozenset[str]:
-        """Ids of objects that the artist edited by hand."""
-        return frozenset(edit.new_id or edit.id for edit in self.hand_edits)
+        """Ids of objects that no automatic step may change: edited by hand or locked, and not unlocked since."""
+        edited = {edit.new_id or edit.id for edit in self.hand_edits}
+        said = {c.id: c.locked for c in self.corrections.objects if c.locked is not None}
+        return frozenset((edited | {i for i, on in said.items() if on}) - {i for i, on in said.items() if not on})
 
 
 @dataclass(frozen=True)

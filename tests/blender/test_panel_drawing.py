@@ -66,10 +66,10 @@ class Drawn:
 
 def draw(title: str = "") -> Drawn:
     """Draw one panel, or all that would be shown."""
-    from code_as_room.panels import sidebar
+    from code_as_room import panels
 
     drawn = Drawn([], [])
-    for cls in sidebar.CLASSES:
+    for cls in panels.panel_classes():
         if title and cls.bl_label != title:
             continue
         if not hasattr(cls, "poll") or cls.poll(bpy.context):
