@@ -9,7 +9,7 @@ RUN := $(VENV)/bin
 OUT ?= out/demo
 BLENDER ?= blender
 
-.PHONY: demo test lint setup test-desktop benchmark clean
+.PHONY: demo test lint setup extension test-desktop screenshots benchmark clean
 
 demo: setup
 	$(RUN)/code-as-room samples/bedroom/picture.png --replies samples/bedroom/replies --out $(OUT)
@@ -30,8 +30,16 @@ benchmark: setup
 	$(RUN)/code-as-room samples/bedroom/picture.png --replies samples/bedroom/replies --out out/benchmark
 	$(RUN)/python -m benchmark.layout out/benchmark/scene.json samples/bedroom/truth.json out/benchmark/memory.json
 
-test-desktop:
+# One zip a platform, with the wheels that Blender lacks, built and validated by Blender's own packager.
+extension: setup
+	$(RUN)/python tools/build_extension.py --out dist
+
+# In the real window: BLENDER is the program, or a command line that starts it.
+test-desktop: setup
 	$(RUN)/python tests/desktop/run_panel.py --blender "$(BLENDER)"
+
+screenshots: setup
+	$(RUN)/python tests/desktop/take_screenshots.py --blender "$(BLENDER)" --out docs/pictures
 
 setup: $(VENV)/.ready
 
