@@ -49,8 +49,15 @@ def bed_1():
     frame = part("frame", rounded_box((1.7, 2.1, 0.3), 0.03, at=(0, 0, 0.35)), material="wood")
     cover = grid(lambda u, v: lerp(0.0, 0.1, smoothstep(0, 1, sin(u * pi)) * noise(u * 5, v * 5, seed=3)), 12, 10, size=(1.6, 2.0))
     pillows = array(sphere((0.3, 0.2, 0.1), segments=8, rings=6), 2, (0.7, 0, 0))
+    soft = [cushion((0.5, 0.5, 0.1), at=(0, 0, 0.6)), pillow((0.4, 0.3, 0.1), at=(0, 0.5, 0.7), seed="p")]
+    soft += [tufted((1.6, 0.1, 0.5), 2, 1, at=(0, 1, 0.9)), drape((1.6, 1.0), hang=0.2, at=(0, 0, 0.5), fringe=0.03)]
+    soft += [curtain((0.8, 0.1, 1.0), 3, at=(0, 0, 1.5)), rug((1, 1, 0.01), "hide"), leaves(5, 0.2, 0.1, at=(0, 0, 1))]
+    block = displace(subdivide(bevel(box((0.3, 0.3, 0.3)), 0.05)), 0.01, 0.1, seed=2)
+    sheet = solidify(bend(taper(grid(lambda u, v: (u, v, v), 2, 5), 0.5), 20), 0.02)
+    column = loft([[(0, 0), (1, 0), (1, 1)], [(0, 0), (0.5, 0), (0.5, 0.5)]], [0, 1])
     posts = [turn(capsule(0.05, 0.6, segments=8), 10 * i, "x") for i in range(3)]
-    return [frame, part("leg", legs, material="metal"), move(cover, (0, 0, 0.7)), part("pillow", pillows), posts]
+    more = [posts, soft, block, sheet, column]
+    return [frame, part("leg", legs, material="metal"), move(cover, (0, 0, 0.7)), part("pillow", pillows), more]
 
 
 def vase():

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from .budget import spend_vertices
-from .checks import choice, fail, flag, is_number, point, positive, whole
+from .checks import choice, fail, flag, is_number, number, point, positive, whole
 from .rings import AXES, circle, outward, placed, revolve, skin
 from .shape import Floats, Shape
 from .solids import MOST_SEGMENTS, ORIGIN
@@ -165,3 +165,25 @@ def across(direction: Floats, tangent: Floats) -> Floats:
         if size > 1e-6:
             return level / size
     return level
+
+
+def loft(outlines: Any, heights: Any, at: Any = ORIGIN, smooth: Any = True) -> Shape:
+    """A solid through outlines that lie above each other, each a list of as many points (x, y), at the given heights."""
+    if not isinstance(outlines, (list, tuple)) or not 2 <= len(outlines) <= 1000:
+        raise fail("loft", "outlines must be a list of at least two outlines")
+    if not isinstance(heights, (list, tuple)) or len(heights) != len(outlines):
+        raise fail("loft", f"heights must be a list of {len(outlines)} numbers, one for each outline")
+    levels = [number("loft", "each height", height) for height in heights]
+    if any(b <= a for a, b in zip(levels, levels[1:], strict=False)):
+        raise fail("loft", "heights must rise from one outline to the next")
+    rings = []
+    for outline, level in zip(outlines, levels, strict=True):
+        if not isinstance(outline, (list, tuple)) or not 3 <= len(outline) <= MOST_POINTS:
+            raise fail("loft", "each outline must be a list of at least three points")
+        corners = [point("loft", "each point of an outline", p, 2) for p in outline]
+        rings.append(np.array([(x, y, level) for x, y in corners]))
+    if len({len(ring) for ring in rings}) > 1:
+        raise fail("loft", "all outlines must have the same number of points")
+    spend_vertices(sum(len(ring) for ring in rings))
+    vertices, faces = skin(rings)
+    return placed("loft", vertices, outward(vertices, faces), at, flag("loft", "smooth", smooth))

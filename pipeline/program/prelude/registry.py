@@ -12,7 +12,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from . import numbers, operations, profiles, sheets, solids
+from . import cloth, growing, numbers, operations, profiles, reshape, sheets, soft, solids
 
 CONSTANTS: dict[str, float] = {"pi": math.pi, "tau": math.tau}
 """Names with a fixed value."""
@@ -45,13 +45,27 @@ CONSTRUCTORS: dict[str, Callable[..., Any]] = {
     "extrude": profiles.extrude,
     "tube": profiles.tube,
     "sweep": profiles.sweep,
+    "loft": profiles.loft,
     "grid": sheets.grid,
     "mesh": sheets.mesh,
+    "cushion": soft.cushion,
+    "pillow": soft.pillow,
+    "tufted": soft.tufted,
+    "drape": cloth.drape,
+    "curtain": cloth.curtain,
+    "rug": cloth.rug,
+    "leaves": growing.leaves,
     "move": operations.move,
     "turn": operations.turn,
     "scale": operations.scale,
     "mirror": operations.mirror,
     "array": operations.array,
+    "bevel": reshape.bevel,
+    "subdivide": reshape.subdivide,
+    "solidify": reshape.solidify,
+    "displace": reshape.displace,
+    "taper": reshape.taper,
+    "bend": reshape.bend,
     "join": operations.join,
     "part": operations.part,
     "material": operations.material,
