@@ -1,26 +1,108 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The add-on's preferences: who answers, and where its key is."""
+"""The add-on's preferences: who answers, where its key is, what may be spent, and the way to it.
+
+What is typed for one provider is kept when another one is chosen and comes back with it. So a key that belongs to one
+service is never sent to another.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import bpy
 
 from .. import __package__ as base_package
-from ..operators import view_state
-from .sentences import draw_sentence
+from ..operators import clients, connection, view_state
+from ..pipeline.models.presets import PRESETS, preset
+from ..pipeline.models.routing import GROUPS
+from .preferences_draw import KEY_WARNING, draw_preferences
 
-KEY_WARNING = (
-    "The key is kept unencrypted in Blender's own preferences file (userpref.blend). "
-    "It never goes into a scene, a .blend, memory, a log or a report. "
-    "Safer: leave it empty, and name an environment variable that holds it."
-)
+__all__ = ["KEY_WARNING", "CodeAsRoomPreferences", "classes"]
+_OF_SERVICE = ("base_url", "model", *(f"model_{group}" for group in GROUPS), "api_key", "key_variable")
+_switching = False
+_MOST_SUGGESTIONS = 400
 
 
 def _changed(preferences: Any, context: Any) -> None:
     """The panel says what answers; it may have changed."""
+    if _switching:
+        return
+    connection.settings_changed()
     view_state.refresh_all()
+
+
+def _provider_changed(preferences: Any, context: Any) -> None:
+    """Put aside what was typed for the earlier provider, and bring back what belongs to this one."""
+    global _switching
+    before, now = preferences.last_provider, preferences.provider
+    if before != now and not _switching:
+        _switching = True
+        try:
+            _put_aside(preferences, before)
+            _bring_back(preferences, now)
+            preferences.last_provider = now
+        finally:
+            _switching = False
+    _changed(preferences, context)
+
+
+def _put_aside(preferences: Any, provider: str) -> None:
+    kept = preferences.services.get(provider)
+    if kept is None:
+        kept = preferences.services.add()
+        kept.name = provider
+    for name in _OF_SERVICE:
+        setattr(kept, name, getattr(preferences, name))
+
+
+def _bring_back(preferences: Any, provider: str) -> None:
+    kept = preferences.services.get(provider)
+    for name in _OF_SERVICE:
+        setattr(preferences, name, getattr(kept, name) if kept is not None else "")
+    if not preferences.base_url.strip():
+        preferences.base_url = preset(provider).base_url
+
+
+def _cap_changed(preferences: Any, context: Any) -> None:
+    clients.take_over_cap()
+
+
+def _suggest_models(preferences: Any, context: Any, text: str) -> Iterator[tuple[str, str]]:
+    """What the service listed, for the model's field. No request is made here."""
+    words = text.lower().split()
+    fitting = (i for i in connection.models_of(preferences) if all(word in i.id.lower() for word in words))
+    for number, info in enumerate(fitting):
+        if number >= _MOST_SUGGESTIONS:
+            return
+        yield info.id, info.hint()
+
+
+def _model(title: str, description: str) -> Any:
+    return bpy.props.StringProperty(
+        name=title,
+        description=description,
+        update=_changed,
+        search=_suggest_models,
+        search_options={"SUGGESTION"},
+    )
+
+
+class CodeAsRoomService(bpy.types.PropertyGroup):
+    """What was typed for one provider, while another one is chosen. `name` is the provider's id."""
+
+    base_url: bpy.props.StringProperty(name="Base URL", description="Address of the service")  # type: ignore[valid-type]
+    model: bpy.props.StringProperty(name="Model", description="The model's name")  # type: ignore[valid-type]
+    model_seeing: bpy.props.StringProperty(name="Seeing", description="The model for stage 1")  # type: ignore[valid-type]
+    model_layout: bpy.props.StringProperty(name="Layout", description="The model for stages 2 to 4")  # type: ignore[valid-type]
+    model_modelling: bpy.props.StringProperty(name="Modelling", description="The model for stages 5 to 7")  # type: ignore[valid-type]
+    model_surfaces: bpy.props.StringProperty(  # type: ignore[valid-type]
+        name="Surfaces and Light", description="The model for stages 8 to 10"
+    )
+    api_key: bpy.props.StringProperty(name="API Key", description="The service's key", subtype="PASSWORD")  # type: ignore[valid-type]
+    key_variable: bpy.props.StringProperty(  # type: ignore[valid-type]
+        name="Key Variable", description="Name of the environment variable that holds the key"
+    )
 
 
 class CodeAsRoomPreferences(bpy.types.AddonPreferences):
@@ -31,17 +113,18 @@ class CodeAsRoomPreferences(bpy.types.AddonPreferences):
     provider: bpy.props.EnumProperty(  # type: ignore[valid-type]
         name="Answers From",
         description="Who looks at the picture",
-        items=(
-            ("BUILTIN", "Built-in analysis", "No model and no network: the picture is measured on this computer"),
-            (
-                "OPENAI",
-                "Model service",
-                "Any service with an OpenAI-style address, on this computer or on the internet",
-            ),
-            ("RECORDED", "Recorded answers", "Play back answers that were recorded in a folder, as with the samples"),
-        ),
+        items=tuple((p.id, p.title, p.tooltip, "NONE", p.number) for p in PRESETS),
         default="BUILTIN",
-        update=_changed,
+        update=_provider_changed,
+    )
+    last_provider: bpy.props.StringProperty(  # type: ignore[valid-type]
+        name="Last Provider", description="Whose settings stand in the fields", default="BUILTIN", options={"HIDDEN"}
+    )
+    services: bpy.props.CollectionProperty(  # type: ignore[valid-type]
+        name="Services",
+        description="What was typed for the other providers",
+        type=CodeAsRoomService,
+        options={"HIDDEN"},
     )
     base_url: bpy.props.StringProperty(  # type: ignore[valid-type]
         name="Base URL",
@@ -49,10 +132,20 @@ class CodeAsRoomPreferences(bpy.types.AddonPreferences):
         default="http://localhost:1234/v1",
         update=_changed,
     )
-    model: bpy.props.StringProperty(  # type: ignore[valid-type]
-        name="Model",
-        description="The model's name as the service spells it; it must understand pictures",
-        update=_changed,
+    model: _model(  # type: ignore[valid-type]
+        "Model", "The model's name as the service spells it; it must understand pictures"
+    )
+    model_seeing: _model(  # type: ignore[valid-type]
+        "Seeing", "Another model for stage 1, which finds everything in the picture. Empty: the main model"
+    )
+    model_layout: _model(  # type: ignore[valid-type]
+        "Layout", "Another model for stages 2 to 4, which place and compare. Empty: the main model"
+    )
+    model_modelling: _model(  # type: ignore[valid-type]
+        "Modelling", "Another model for stages 5 to 7, which shape the objects. Empty: the main model"
+    )
+    model_surfaces: _model(  # type: ignore[valid-type]
+        "Surfaces and Light", "Another model for stages 8 to 10. Empty: the main model"
     )
     api_key: bpy.props.StringProperty(  # type: ignore[valid-type]
         name="API Key",
@@ -65,6 +158,16 @@ class CodeAsRoomPreferences(bpy.types.AddonPreferences):
         description="Name of an environment variable that holds the key; it is used instead of the key above",
         update=_changed,
     )
+    spending_cap: bpy.props.FloatProperty(  # type: ignore[valid-type]
+        name="Spending Cap",
+        description="Most US dollars for one room; a question that would pass it is not sent. 0 means no cap",
+        min=0.0,
+        max=10_000.0,
+        soft_max=20.0,
+        step=50,
+        precision=2,
+        update=_cap_changed,
+    )
     timeout: bpy.props.IntProperty(  # type: ignore[valid-type]
         name="Time-out",
         description="Seconds that the service may be silent for before the run gives up",
@@ -72,6 +175,20 @@ class CodeAsRoomPreferences(bpy.types.AddonPreferences):
         min=5,
         max=3600,
         subtype="TIME_ABSOLUTE",
+        update=_changed,
+    )
+    proxy: bpy.props.StringProperty(  # type: ignore[valid-type]
+        name="Proxy",
+        description="HTTP proxy on the way to the internet, such as http://proxy:8080. Empty: what the system's "
+        "environment says. Services on this computer are always asked directly",
+        update=_changed,
+    )
+    ca_bundle: bpy.props.StringProperty(  # type: ignore[valid-type]
+        name="CA Bundle",
+        description="PEM file with the certificates to trust, such as a company proxy's. Empty: the usual ones. "
+        "Certificates are always checked",
+        subtype="FILE_PATH",
+        update=_changed,
     )
     replies_folder: bpy.props.StringProperty(  # type: ignore[valid-type]
         name="Folder",
@@ -79,38 +196,18 @@ class CodeAsRoomPreferences(bpy.types.AddonPreferences):
         subtype="DIR_PATH",
         update=_changed,
     )
+    show_models: bpy.props.BoolProperty(  # type: ignore[valid-type]
+        name="Models by Stage", description="Choose another model for some of the stages", options={"SKIP_SAVE"}
+    )
+    show_network: bpy.props.BoolProperty(  # type: ignore[valid-type]
+        name="Network", description="Time-out, proxy and certificates", options={"SKIP_SAVE"}
+    )
 
     def draw(self, context: bpy.types.Context) -> None:
         """The settings of the chosen provider, and what they mean."""
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
-        layout.prop(self, "provider")
-        if self.provider == "BUILTIN":
-            text = "No model is used: walls, floor and furniture are measured in the picture. Works best on clean pictures."
-            draw_sentence(layout, text, context)
-        elif self.provider == "RECORDED":
-            layout.prop(self, "replies_folder")
-        else:
-            self._draw_service(layout, context)
-
-    def _draw_service(self, layout: Any, context: Any) -> None:
-        layout.prop(self, "base_url")
-        layout.prop(self, "model")
-        row = layout.row()
-        row.enabled = not self.key_variable.strip()
-        row.prop(self, "api_key")
-        layout.prop(self, "key_variable")
-        layout.prop(self, "timeout")
-        text = "Each question sends the picture, crops of it and pictures of the layout to this service."
-        draw_sentence(layout, text, context)
-        draw_sentence(layout, KEY_WARNING, context)
-        state = view_state.peek(context.scene) if context.scene else None
-        if state is not None and state.client_problem is not None:
-            problem = state.client_problem
-            draw_sentence(layout, f"{problem.message} {problem.fix}".strip(), context, icon="ERROR", alert=True)
+        draw_preferences(self, self.layout, context)
 
 
 def classes() -> tuple[type, ...]:
-    """The preferences' class."""
-    return (CodeAsRoomPreferences,)
+    """The preferences' classes."""
+    return (CodeAsRoomService, CodeAsRoomPreferences)

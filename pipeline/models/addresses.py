@@ -11,8 +11,11 @@ from ..errors import ModelError
 _FIX = "Give it like http://localhost:1234/v1 or https://api.example.com/v1."
 
 
-def normal_base_url(text: str) -> str:
-    """A base URL without trailing slash and without the endpoint's own path; "/v1" is added to a bare host.
+def normal_base_url(text: str, bare: str = "/v1", endpoints: tuple[str, ...] = ("/chat/completions",)) -> str:
+    """A base URL without trailing slash and without the endpoint's own path.
+
+    Args:
+        bare: path that is added to a bare host; endpoints: ends that are taken off, the first that fits.
 
     Raises:
         ModelError: it is not an http or https address, or it holds a user name or password.
@@ -28,7 +31,11 @@ def normal_base_url(text: str) -> str:
     if "@" in parts.netloc:
         raise ModelError("The base URL holds a user name or password.", "Put the key into the API key setting.")
     path = parts.path.rstrip("/")
-    path = path.removesuffix("/chat/completions").rstrip("/") or "/v1"
+    for end in endpoints:
+        if path.endswith(end):
+            path = path.removesuffix(end).rstrip("/")
+            break
+    path = path or bare
     return urlunsplit((parts.scheme, parts.netloc, path, "", ""))
 
 
@@ -40,6 +47,22 @@ def is_loopback(host: str) -> bool:
         return ipaddress.ip_address(host.strip("[]")).is_loopback
     except ValueError:
         return False
+
+
+def is_own_network(url: str) -> bool:
+    """Whether a URL leads to this computer or into its own network, where no one asks for money."""
+    try:
+        host = (urlsplit(url).hostname or "").lower()
+    except ValueError:
+        return False
+    if not host:
+        return False
+    if is_loopback(host) or host.endswith((".local", ".lan", ".home.arpa", ".internal")):
+        return True
+    try:
+        return ipaddress.ip_address(host).is_private
+    except ValueError:
+        return "." not in host
 
 
 def is_local_url(url: str) -> bool:

@@ -77,3 +77,9 @@ class ModelClient(Protocol):
             Cancelled: `cancel` was set.
         """
         ...
+
+
+def name_of(client: ModelClient, stage: str) -> str:
+    """The name under which memory keeps this client's answers to a stage; clients may use a model of its own for each."""
+    name_for = getattr(client, "name_for", None)
+    return str(name_for(stage)) if name_for is not None else client.name

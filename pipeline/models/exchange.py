@@ -17,12 +17,15 @@ from typing import Any
 from urllib.parse import urljoin, urlsplit
 
 import requests
-import urllib3
 
 from ..errors import Cancelled
 from .addresses import is_loopback
 from .faults import Fault, FaultKind, ServiceError
 from .leash import Leash, LeashedAdapter
+from .limits import Limits, Route
+from .network_faults import network_fault
+
+__all__ = ["Answer", "Call", "Limits", "Route", "exchange"]
 
 THREAD_NAME = "code-as-room-exchange"
 _TICK = 0.05
@@ -33,27 +36,19 @@ _HEADERS = {"Content-Type": "application/json", "Accept-Encoding": "identity", "
 
 
 @dataclass(frozen=True)
-class Limits:
-    """Seconds for connecting, between two pieces of a reply, and for everything; bytes of a reply."""
-
-    connect: float = 10.0
-    read: float = 120.0
-    total: float = 900.0
-    size: int = 20_000_000
-
-
-@dataclass(frozen=True)
 class Call:
-    """A POST request: where to, what, and the headers; `key` is sent as a bearer token unless it is empty.
+    """A request: where to, what (None for a GET), and the headers.
 
-    `enough` is fed every piece of a successful reply and says when the rest need not be waited for.
+    `key` is sent in the header `key_header`, as a bearer token where that is "Authorization"; not at all when it is
+    empty. `enough` is fed every piece of a successful reply and says when the rest need not be waited for.
     """
 
     url: str
-    body: bytes
+    body: bytes | None = None
     key: str = field(default="", repr=False)
+    key_header: str = "Authorization"
     headers: Mapping[str, str] = field(default_factory=dict)
-    ca_bundle: str = ""
+    route: Route = Route()
     enough: Callable[[bytes], bool] = lambda piece: False
 
 
@@ -134,7 +129,7 @@ def _work(call: Call, limits: Limits, leash: Leash, outcome: queue.SimpleQueue[s
     except Fault as fault:
         result = fault
     except Exception as error:
-        result = _network_fault(error, leash, limits, _host(call.url))
+        result = network_fault(error, leash, limits, _host(call.url), bool(call.route.proxy))
     finally:
         leash.release()
     outcome.put(result)
@@ -178,21 +173,22 @@ def _send(session: requests.Session, url: str, call: Call, limits: Limits, tell:
     def authorise(request: requests.PreparedRequest) -> requests.PreparedRequest:
         # An explicit callable also keeps requests from taking credentials out of a .netrc file.
         if call.key:
-            request.headers["Authorization"] = f"Bearer {call.key}"
+            bearer = call.key_header == "Authorization"
+            request.headers[call.key_header] = f"Bearer {call.key}" if bearer else call.key
         return request
 
-    with session.post(
+    with session.request(
+        "GET" if call.body is None else "POST",
         url,
         # Sent in blocks: a socket's time-out covers one whole send, and large pictures take longer on slow lines.
-        data=io.BytesIO(call.body),
+        data=None if call.body is None else io.BytesIO(call.body),
         headers={**_HEADERS, **call.headers},
         auth=authorise,
         timeout=(limits.connect, limits.read),
         stream=True,
         allow_redirects=False,
-        verify=call.ca_bundle or True,
-        # A local server is never behind a proxy, whatever the environment says.
-        proxies={"no_proxy": host} if is_loopback(host) else {},
+        verify=call.route.ca_bundle or True,
+        proxies=_proxies(host, call.route),
     ) as response:
         good = response.status_code == 200
         body = bytearray()
@@ -210,6 +206,14 @@ def _send(session: requests.Session, url: str, call: Call, limits: Limits, tell:
         return Answer(response.status_code, response.headers, bytes(body))
 
 
+def _proxies(host: str, route: Route) -> dict[str, str]:
+    """What `requests` shall know of proxies; it asks the environment where this is empty."""
+    if is_loopback(host):
+        # A local server is never behind a proxy, whatever the settings and the environment say.
+        return {"no_proxy": host}
+    return {"http": route.proxy, "https": route.proxy} if route.proxy else {}
+
+
 def _pieces(raw: Any) -> Iterator[bytes]:
     """The body's pieces as they arrive, decompressed."""
     if getattr(raw, "chunked", False) and raw.supports_chunked_reads():
@@ -222,35 +226,3 @@ def _pieces(raw: Any) -> Iterator[bytes]:
         if not piece:
             return
         yield piece
-
-
-def _network_fault(error: Exception, leash: Leash, limits: Limits, host: str) -> Fault:
-    """The fault for an exception of requests, urllib3 or the socket; its text is not shown, it may hold secrets."""
-    if isinstance(error, requests.exceptions.ProxyError):
-        return _fault(f"The proxy on the way to {host} refuses.", "Check the proxy settings.", "proxy")
-    if isinstance(error, (requests.exceptions.SSLError, urllib3.exceptions.SSLError)):
-        return _fault(
-            f"The certificate of {host} cannot be verified.",
-            "Check the base URL; behind a company proxy, set REQUESTS_CA_BUNDLE to its certificate file.",
-            "tls",
-        )
-    if leash.problem:
-        return _fault(
-            f"The service at {host} cannot be reached: {leash.problem}.",
-            "Check the base URL, that the service runs, and the internet connection.",
-            "network",
-            retry=True,
-        )
-    if isinstance(error, (requests.exceptions.ReadTimeout, urllib3.exceptions.ReadTimeoutError)):
-        # Not tried again: the service may well be working on it, and it would be paid for twice.
-        return _fault(f"The service at {host} was silent for {limits.read:g} s.", _LONGER, "timeout")
-    if isinstance(error, (requests.exceptions.InvalidURL, requests.exceptions.InvalidSchema, UnicodeError)):
-        return _fault("The base URL is not a valid address.", "Check the base URL.", "request")
-    if isinstance(error, (requests.exceptions.RequestException, urllib3.exceptions.HTTPError, OSError)):
-        return _fault(
-            f"The connection to {host} broke off.",
-            "Check the internet connection and try again.",
-            "network",
-            retry=True,
-        )
-    return _fault(f"The exchange with {host} failed ({type(error).__name__}).", "Try again.", "network")

@@ -3,17 +3,21 @@
 
 from __future__ import annotations
 
+import base64
 import email.utils
 import json
 import re
 import time
 from collections.abc import Mapping
 from typing import Any, Literal
+from urllib.parse import quote
 
 from ..errors import ModelError
 
 FaultKind = Literal[
     "network",
+    "name",
+    "refused",
     "timeout",
     "tls",
     "proxy",
@@ -25,6 +29,7 @@ FaultKind = Literal[
     "rate",
     "server",
     "request",
+    "refusal",
     "shape",
 ]
 RETRIED_STATUSES = frozenset({408, 429, 500, 502, 503, 504, 529})
@@ -35,7 +40,11 @@ _MONEY = re.compile(
     r"|exceeded your current quota|out of credits|not enough credits|payment[_ ]required|quota[_ ]exceeded|usage limit",
     re.IGNORECASE,
 )
-_KEY_LIKE = re.compile(r"\b(?:sk|pk|key|AIza|xai|gsk|hf|r8)[-_][A-Za-z0-9_\-]{8,}|(?i:bearer)\s+[^\s\"',;}]+")
+_KEY_LIKE = re.compile(
+    r"\b(?:sk|pk|key|xai|gsk|hf|r8)[-_][A-Za-z0-9_\-]{8,}|\bAIza[A-Za-z0-9_\-]{8,}|(?i:bearer)\s+[^\s\"',;}]+"
+)
+_LEAST_KEY = 8
+"""Shorter "keys", such as "none" for a local service, are no secrets, and may be words of an answer."""
 
 
 class ServiceError(ModelError):
@@ -70,11 +79,21 @@ class Fault(Exception):
 def redact(text: str, key: str | None) -> str:
     """The text without the key, and without anything else that looks like one."""
     if key:
-        text = text.replace(key, "[key]")
+        text = without_key(text, key).replace(key, "[key]")
         if len(key) >= 12:
             # Services quote keys in part ("sk-abcd...wxyz"); a long enough beginning is as telling.
-            text = re.sub(re.escape(key[:8]) + r"[^\s\"'<>]*", "[key]", text)
+            text = re.sub(re.escape(key[:8]) + r"[^\s\"'<>]*", "[key]", text, flags=re.IGNORECASE)
     return _KEY_LIKE.sub("[key]", text)
+
+
+def without_key(text: str, key: str | None) -> str:
+    """The text without this key, in whatever form a service may have echoed it. Nothing else is changed."""
+    if not key or len(key) < _LEAST_KEY:
+        return text
+    forms = {key, quote(key, safe=""), json.dumps(key)[1:-1], base64.b64encode(key.encode()).decode().rstrip("=")}
+    for form in sorted(forms, key=len, reverse=True):
+        text = re.sub(re.escape(form), "[key]", text, flags=re.IGNORECASE)
+    return text
 
 
 def plain(text: str, key: str | None) -> str:
@@ -114,6 +133,11 @@ def _message_in(data: Any, depth: int = 0) -> str:
     return ""
 
 
+def quoted(sentence: str) -> str:
+    """A service's own words as an end to a sentence of ours, "" when there are none."""
+    return f' It says: "{sentence.rstrip(". ")}".' if sentence.strip(". ") else ""
+
+
 def status_fault(status: int, body: bytes, headers: Mapping[str, str], host: str, key: str | None) -> Fault:
     """The fault for an HTTP status other than success, by the table in the reference.
 
@@ -125,7 +149,7 @@ def status_fault(status: int, body: bytes, headers: Mapping[str, str], host: str
 
 def fault_for(status: int, sentence: str, codes: str, after: float, host: str) -> Fault:
     """The fault for a status (from HTTP or from inside an error body), the service's sentence and its error codes."""
-    said = f' It says: "{sentence}"' if sentence else ""
+    said = quoted(sentence)
     if status == 402 or (status in (400, 403, 429, 0) and _MONEY.search(f"{codes} {sentence}")):
         error = ServiceError(
             f"The account at {host} has no credit or has reached its limit.{said}",

@@ -13,7 +13,7 @@ import selectors
 import socket
 import threading
 import time
-from typing import Any
+from typing import Any, Literal
 
 from requests.adapters import HTTPAdapter
 from urllib3.connection import HTTPConnection, HTTPSConnection
@@ -27,11 +27,13 @@ class Leash:
     """Holds the sockets of one exchange.
 
     Attributes:
-        problem: why no connection came about, in a few words, "" when one did or none was tried.
+        problem: why no connection came about, in a few words, "" when one did or none was tried; kind: the same for
+            a connection test.
     """
 
     def __init__(self) -> None:
         self.problem = ""
+        self.kind: Literal["name", "refused", "timeout", "network"] = "network"
         self._cut = threading.Event()
         self._lock = threading.Lock()
         self._held: list[socket.socket] = []
@@ -63,9 +65,9 @@ class Leash:
         try:
             addresses = socket.getaddrinfo(host, connection.port, 0, socket.SOCK_STREAM)
         except (OSError, UnicodeError):
-            self.problem = "its name cannot be found"
+            self.problem, self.kind = "its name cannot be found", "name"
             raise NewConnectionError(connection, self.problem) from None
-        self.problem = "it cannot be reached"
+        self.problem, self.kind = "it cannot be reached", "network"
         for family, kind, protocol, _, address in addresses:
             try:
                 opened = socket.socket(family, kind, protocol)
@@ -76,7 +78,7 @@ class Leash:
             except OSError as error:
                 opened.close()
                 if isinstance(error, ConnectionRefusedError):
-                    self.problem = "nothing answers there"
+                    self.problem, self.kind = "nothing answers there", "refused"
                 if self._cut.is_set() or isinstance(error, TimeoutError):
                     break
                 continue
@@ -84,7 +86,7 @@ class Leash:
             self.problem = ""
             return opened
         if time.monotonic() >= deadline:
-            self.problem = f"it did not answer within {seconds:g} s"
+            self.problem, self.kind = f"it did not answer within {seconds:g} s", "timeout"
             raise ConnectTimeoutError(connection, self.problem)
         raise NewConnectionError(connection, self.problem)
 

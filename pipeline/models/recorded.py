@@ -22,7 +22,7 @@ from typing import Any
 from PIL import Image
 
 from ..errors import Cancelled, ModelError, OutputError, ReplyError
-from .base import ModelClient, Prompt, Reply
+from .base import ModelClient, Prompt, Reply, name_of
 from .readable_json import readable_json
 from .tolerant import read_json
 
@@ -44,7 +44,9 @@ class RecordedClient:
         self.folder = Path(folder)
         self._replies = load_replies(self.folder)
         models = sorted({str(entry.get("model", "")) for entry in self._replies.values()} - {""})
-        self.name = "recorded"
+        # Memory recalls answers by this name, and another folder's answers are others.
+        digest = hashlib.sha256(json.dumps(self._replies, sort_keys=True).encode()).hexdigest()
+        self.name = f"recorded:{digest[:8]}"
         self.describes = f"Recorded answers from {self.folder.name!r} (made by {', '.join(models) or 'unknown'})"
 
     def answer(self, prompt: Prompt, cancel: threading.Event, progress: Callable[[str], None] | None = None) -> Reply:
@@ -85,11 +87,15 @@ class Recorder:
     """
 
     def __init__(self, client: ModelClient, folder: str | Path) -> None:
-        self.client = client
+        self.inner = client
         self.folder = Path(folder)
         self.name = client.name
         self.describes = f"{client.describes}, recorded into {self.folder.name!r}"
         self._lock = threading.Lock()
+
+    def name_for(self, stage: str) -> str:
+        """The name of who answers a stage."""
+        return name_of(self.inner, stage)
 
     def answer(self, prompt: Prompt, cancel: threading.Event, progress: Callable[[str], None] | None = None) -> Reply:
         """Answer with the wrapped client and keep what it said.
@@ -97,7 +103,7 @@ class Recorder:
         Raises:
             OutputError: the recording cannot be written. Otherwise as the wrapped client.
         """
-        reply = self.client.answer(prompt, cancel, progress)
+        reply = self.inner.answer(prompt, cancel, progress)
         entry = _entry(prompt, reply)
         with self._lock:
             replies = load_replies(self.folder) if (self.folder / FILE_NAME).exists() else {}

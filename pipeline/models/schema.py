@@ -47,6 +47,36 @@ def shape_text(schema: Mapping[str, Any]) -> str:
     return json.dumps(schema, ensure_ascii=False, separators=(",", ":"))
 
 
+def older_schema(schema: Mapping[str, Any]) -> dict[str, Any]:
+    """A strict schema in the older form that Gemini's `responseSchema` takes: no references, `nullable`, no closing."""
+    return _older(schema, schema.get("$defs", {}))
+
+
+def _older(node: Mapping[str, Any], definitions: Mapping[str, Any]) -> dict[str, Any]:
+    if "$ref" in node:
+        return _older(definitions[_target(node["$ref"])], definitions)
+    result: dict[str, Any] = {name: node[name] for name in ("type", "description", "required") if name in node}
+    choices = [choice for choice in node.get("anyOf", []) if choice.get("type") != "null"]
+    if choices:
+        described = dict(result)
+        result = _older(choices[0], definitions) if len(choices) == 1 else {}
+        if len(choices) > 1:
+            result["anyOf"] = [_older(choice, definitions) for choice in choices]
+        result |= described
+        if len(choices) < len(node["anyOf"]):
+            result["nullable"] = True
+    if "enum" in node:
+        texts = [value for value in node["enum"] if isinstance(value, str)]
+        # Only texts may be listed there.
+        if len(texts) == len(node["enum"]):
+            result["enum"] = texts
+    if "properties" in node:
+        result["properties"] = {name: _older(value, definitions) for name, value in node["properties"].items()}
+    if "items" in node:
+        result["items"] = _older(node["items"], definitions)
+    return result
+
+
 def _target(reference: str) -> str:
     return reference.rsplit("/", 1)[-1]
 

@@ -199,9 +199,9 @@ def test_a_server_that_is_not_there_is_named(a_prompt, monkeypatch):
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
     error = failure(make(f"http://127.0.0.1:{port}/v1"), a_prompt)
-    assert error.kind == "network" and "nothing answers there" in str(error)
+    assert error.kind == "refused" and "nothing answers there" in str(error)
     error = failure(make("http://no-such-host.invalid/v1"), a_prompt)
-    assert error.kind == "network" and "name cannot be found" in str(error)
+    assert error.kind == "name" and "name cannot be found" in str(error)
 
 
 def test_a_server_that_speaks_no_tls_gets_no_request(peer, a_prompt):

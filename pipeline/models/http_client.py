@@ -1,0 +1,225 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What all clients of model services share: one prompt, asked with retries, in the best form that the service accepts.
+
+No sampling parameters are sent (reasoning models refuse them). A structured reply by JSON schema and streaming are
+asked for first; what a service refuses is remembered and left out from then on.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import threading
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+from urllib.parse import urlsplit
+
+from ..errors import ModelError
+from .addresses import is_local_url, normal_base_url
+from .base import Prompt, Reply
+from .exchange import Answer, Call, exchange
+from .faults import Fault, status_fault
+from .limits import Limits, Route
+from .reply_reader import ReplyReader
+from .retry import RetryPolicy, with_retries
+from .schema import shape_text
+
+Structure = Literal["schema", "older", "object", "none"]
+
+
+@dataclass(frozen=True)
+class Habits:
+    """What a service has been found to accept.
+
+    Attributes:
+        structure: how a structured reply is asked for: by schema, by the service's older kind of schema, as any JSON
+            object, or in words only. stream, stream_usage: streaming, with token counts.
+        most_tokens: longest answer to ask for, 0 where none has to be given.
+    """
+
+    structure: Structure = "schema"
+    stream: bool = True
+    stream_usage: bool = True
+    most_tokens: int = 0
+
+
+class HttpClient:
+    """A client for one service and model. Safe to use from several threads. Subclasses know one service's envelope.
+
+    Args:
+        base_url: such as "http://localhost:1234/v1"; api_key: "" for services that need none.
+        route: proxy and certificates.
+
+    Raises:
+        ModelError: the address, the model's name or the key cannot be right.
+    """
+
+    vendor = ""
+    endpoints: tuple[str, ...] = ()
+    """Ends of addresses that people paste along with the base URL."""
+    default_path = "/v1"
+    key_header = "Authorization"
+    reader: type[ReplyReader] = ReplyReader
+    structures: tuple[Structure, ...] = ("schema", "object", "none")
+    structure_words: tuple[str, ...] = ("schema",)
+    first_habits = Habits()
+
+    def __init__(
+        self,
+        base_url: str,
+        model: str,
+        api_key: str = "",
+        limits: Limits | None = None,
+        retries: RetryPolicy | None = None,
+        route: Route | None = None,
+    ) -> None:
+        self.base_url = normal_base_url(base_url, self.default_path, self.endpoints)
+        self.model = model.strip()
+        if not self.model:
+            raise ModelError("No model is named.", "Give the model's name as the service spells it.")
+        self._key = checked_key(api_key)
+        self._limits = limits or Limits()
+        self._retries = retries or RetryPolicy()
+        self._route = route or Route()
+        self._habits = self.first_habits
+        self._lock = threading.Lock()
+        self.host = urlsplit(self.base_url).hostname or ""
+        self.name = f"{self.vendor}:{self.model}"
+        where = "on this computer" if is_local_url(self.base_url) else f"at {self.host}"
+        self.describes = f"The model {self.model} {where}"
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self.base_url!r}, {self.model!r})"
+
+    @property
+    def structure(self) -> Structure:
+        """How a structured reply is asked for, as far as this service has been found to accept it."""
+        return self._habits.structure
+
+    def url(self, habits: Habits) -> str:
+        """Where a prompt is sent."""
+        raise NotImplementedError
+
+    def body(self, prompt: Prompt, habits: Habits) -> dict[str, Any]:
+        """The request's body."""
+        raise NotImplementedError
+
+    def headers(self) -> Mapping[str, str]:
+        """Further headers; never the key."""
+        return {}
+
+    def plain_call(self, path: str, body: bytes | None = None) -> Call:
+        """A request beside the questions, such as for the list of models: a GET, or a POST of this body."""
+        return Call(
+            url=self.base_url + path,
+            body=body,
+            key=self._key,
+            key_header=self.key_header,
+            headers={"Accept": "application/json", **self.headers()},
+            route=self._route,
+        )
+
+    def fault(self, answer: Answer) -> Fault:
+        """The fault for an answer with a status other than 200."""
+        return status_fault(answer.status, answer.body, answer.headers, self.host, self._key)
+
+    def answer(self, prompt: Prompt, cancel: threading.Event, progress: Callable[[str], None] | None = None) -> Reply:
+        """Ask the service; see `ModelClient.answer`.
+
+        Raises:
+            ServiceError: in the service's own words where it gave any, never with the key.
+            CutReplyError: the answer hit the model's length limit.
+            ReplyError: the answer is empty.
+            Cancelled: `cancel` was set.
+        """
+        started = time.monotonic()
+        deadline = started + self._limits.total
+        reply = with_retries(
+            lambda: self._negotiate(prompt, deadline, cancel, progress), self._retries, deadline, cancel, progress
+        )
+        return replace(reply, seconds=time.monotonic() - started)
+
+    def _negotiate(
+        self, prompt: Prompt, deadline: float, cancel: threading.Event, progress: Callable[[str], None] | None
+    ) -> Reply:
+        """Ask, and on a refusal of streaming or structured output ask at once again without it."""
+        while True:
+            habits = self._habits
+            try:
+                return self._once(prompt, habits, deadline, cancel, progress)
+            except Fault as fault:
+                humbler = self.humbler(habits, fault)
+                if humbler is None:
+                    raise
+            with self._lock:
+                # Another request may have learnt more in the meantime; never go back.
+                if self._habits == habits:
+                    self._habits = humbler
+
+    def _once(
+        self,
+        prompt: Prompt,
+        habits: Habits,
+        deadline: float,
+        cancel: threading.Event,
+        progress: Callable[[str], None] | None,
+    ) -> Reply:
+        reader = self.reader(self.host, self._key)
+        accept = "text/event-stream, application/json" if habits.stream else "application/json"
+        call = Call(
+            url=self.url(habits),
+            body=json.dumps(self.body(prompt, habits)).encode(),
+            key=self._key,
+            key_header=self.key_header,
+            headers={"Accept": accept, **self.headers()},
+            route=self._route,
+            enough=reader.feed,
+        )
+        # A one-shot answer sends nothing until it is complete, so only the total limit can end it.
+        limits = self._limits if habits.stream else replace(self._limits, read=self._limits.total)
+        answer = exchange(call, limits, deadline, cancel, progress)
+        if answer.status != 200:
+            raise self.fault(answer)
+        return reader.finish(answer.headers.get("Content-Type", ""), self.model)
+
+    def humbler(self, habits: Habits, fault: Fault) -> Habits | None:
+        """What to ask for instead after a refusal that names a feature; None when it names none."""
+        if fault.error.status not in (400, 404, 415, 422, 501) or fault.error.kind == "money":
+            return None
+        said = fault.sentence.lower()
+        if habits.stream and habits.stream_usage and ("stream_options" in said or "include_usage" in said):
+            return replace(habits, stream_usage=False)
+        if habits.structure != "none" and any(word in said for word in self.structure_words):
+            return replace(habits, structure=self.structures[self.structures.index(habits.structure) + 1])
+        if habits.stream and "stream" in said:
+            return replace(habits, stream=False)
+        return None
+
+
+def checked_key(key: str) -> str:
+    """The key without surrounding space.
+
+    Raises:
+        ModelError: it holds what no key holds; HTTP libraries would quote it in their errors.
+    """
+    key = key.strip()
+    if any(not 33 <= ord(char) <= 126 for char in key):
+        raise ModelError("The API key holds spaces or characters that no key has.", "Copy the key again.")
+    return key
+
+
+def picture_kind(image: bytes) -> str:
+    """The media type of an encoded picture."""
+    return "image/png" if image.startswith(b"\x89PNG") else "image/webp" if image[8:12] == b"WEBP" else "image/jpeg"
+
+
+def picture_text(image: bytes) -> str:
+    """An encoded picture in base64."""
+    return base64.b64encode(image).decode()
+
+
+def with_schema(prompt: Prompt) -> str:
+    """The prompt's text with the answer's schema in words, for services that do not take it otherwise."""
+    return f"{prompt.text}\n\nAnswer with one JSON object that fits this JSON schema:\n{shape_text(prompt.schema)}"
