@@ -13,7 +13,7 @@ import bpy
 import numpy as np
 from PIL import Image
 
-from ..pipeline.errors import PictureError
+from ..pipeline.errors import PictureError, RoomError
 from ..pipeline.picture import ReferencePicture, read_picture
 
 _MARK = "code_as_room_reference"
@@ -46,19 +46,51 @@ def picture_mark(scene: Any) -> str:
 def kept_picture(scene: Any) -> ReferencePicture | None:
     """The scene's reference image, None when there is none.
 
+    An image that was unpacked is read from its file, for as long as that was not changed.
+
     Raises:
-        PictureError: the image is there, but its packed bytes are gone or were changed.
+        PictureError: the image is there, but its bytes are gone or were changed.
     """
     settings = scene.code_as_room
     image = settings.picture
     if image is None:
         return None
     known = picture_mark(scene)
-    data = bytes(image.packed_file.data) if image.packed_file is not None else b""
+    data = bytes(image.packed_file.data) if image.packed_file is not None else _unpacked(image)
     if not data or hashlib.sha256(data).hexdigest() != known:
-        raise PictureError("The reference image inside this file was changed or unpacked.", "Load the picture again.")
+        name = settings.picture_name or image.name
+        what = "was changed" if data else "was unpacked, and its file is not there"
+        raise PictureError(f"The reference image {name!r} {what}.", "Load the same picture again to go on.")
     width, height = _size(data)
     return ReferencePicture(settings.picture_name or image.name, width, height, data, known)
+
+
+def missing(scene: Any) -> RoomError:
+    """What to tell the artist when there is no reference image."""
+    name = scene.code_as_room.picture_name
+    if not name:
+        return RoomError("There is no picture yet.", "Load a picture of a room first.")
+    return PictureError(f"The picture {name!r} was removed from this file.", "Load the same picture again to go on.")
+
+
+def pack_again(scene: Any) -> None:
+    """Take a reference image that the artist unpacked back into the file, when its bytes are still the same."""
+    image = scene.code_as_room.picture
+    if image is None or image.library is not None or image.packed_file is not None:
+        return
+    data = _unpacked(image)
+    if data and hashlib.sha256(data).hexdigest() == picture_mark(scene):
+        image.pack(data=data, data_len=len(data))
+
+
+def _unpacked(image: Any) -> bytes:
+    """The bytes of an image's file, b"" when they cannot be read."""
+    if not image.filepath:
+        return b""
+    try:
+        return Path(bpy.path.abspath(image.filepath, library=image.library)).read_bytes()
+    except (OSError, ValueError):
+        return b""
 
 
 def _size(data: bytes) -> tuple[int, int]:

@@ -8,9 +8,10 @@ from typing import Any
 
 import bpy
 
+from ..pipeline.scene.holding import forget_aside
 from ..pipeline.scene.tags import ID, find_room_collection
 from ..pipeline.scene.texts import MEMORY, PROGRAM
-from . import driver, view_state
+from . import driver, own_room, view_state
 
 _results: dict[int, Path] = {}
 
@@ -26,7 +27,11 @@ def put_aside(scene: Any) -> str:
     """Remove the room that was built in this scene; its memory stays in the file as a text. Returns that text's name.
 
     Only what we made is removed; what the artist put into the room's collection moves to the scene's own.
+
+    Raises:
+        RoomError: the room is linked from another file.
     """
+    own_room.prepare(scene)
     memory = room_text(scene, "MEMORY")
     name = ""
     if memory is not None:
@@ -44,6 +49,7 @@ def put_aside(scene: Any) -> str:
 
 
 def _remove_room(scene: Any, room: Any, texts: list[Any]) -> None:
+    forget_aside(room)
     inside = {room, *room.children_recursive}
     for obj in list(room.all_objects):
         elsewhere = any(owner not in inside for owner in obj.users_collection)

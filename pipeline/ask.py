@@ -14,7 +14,8 @@ from typing import Literal
 from pydantic import BaseModel
 
 from .errors import Cancelled, ModelError, ReplyError, RoomError
-from .models.base import ModelClient, Prompt, Reply
+from .journal import KeptReply
+from .models.base import ModelClient, Prompt, Reply, name_of
 from .models.validate import validate_reply
 from .prompting import PROMPT_LIMIT, make_prompt, repair_prompt
 from .stages.wishes import Ask, Request
@@ -33,7 +34,7 @@ class AskResult:
         model, prompt_tokens, completion_tokens, cost (US dollars or None), seconds: sums over all tries.
         notes: sentences for the report: what was forgiven, corrected, drifted, left out.
         prompt_bytes: bytes of prompt text sent, all tries; prompt_hash: of the first try's prompt.
-        tries: calls of the client; 0 when the answer was recalled.
+        tries: calls of the client that were sent; 0 when the answer was recalled.
     """
 
     key: str
@@ -61,6 +62,7 @@ class AskEvent:
 
 Recall = Callable[[Prompt], Reply | None]
 Keep = Callable[[AskResult], None]
+Refuse = Callable[[str], None]
 OnEvent = Callable[[AskEvent], None]
 
 
@@ -72,15 +74,17 @@ def perform_ask(
     recall: Recall | None = None,
     keep: Keep | None = None,
     on_event: OnEvent | None = None,
+    refuse: Refuse | None = None,
 ) -> list[AskResult]:
     """Answer every request, at most four at a time, and return the results in the order of the requests.
 
-    `recall`, `keep` and `on_event` are called on the calling thread only. When one request fails, the others that are
+    `recall`, `keep`, `refuse` and `on_event` are called on the calling thread only. When one request fails, the others that are
     already running are let finish and handed to `keep` before the error is raised; those not begun are not sent.
 
     Args:
         recall: gives an earlier answer to the same prompt (same hash), so that nothing is paid for twice.
         keep: is handed each answer as soon as it is validated.
+        refuse: is handed the key of each request whose answers stayed unusable.
 
     Raises:
         ReplyError: an answer stayed unusable after the repair round.
@@ -98,6 +102,9 @@ def perform_ask(
             tell(AskEvent(request.key, "recalled", "the earlier answer is used again"))
     todo = [index for index in range(len(prompts)) if index not in results]
     errors = _run(todo, ask, prompts, client, cancel, results, keep or (lambda result: None), tell)
+    if refuse is not None:
+        for index in (i for i, error in errors.items() if isinstance(error, ReplyError)):
+            refuse(ask.requests[index].key)
     if cancel.is_set() or any(isinstance(error, Cancelled) for error in errors.values()):
         raise Cancelled
     if errors:
@@ -174,7 +181,8 @@ def _collect(
         if result is not None:
             results[index] = result
             keep(result)
-            tell(AskEvent(key, "answered", f"answered by {result.model} in {result.seconds:.1f} s"))
+            if result.tries:
+                tell(AskEvent(key, "answered", f"answered by {result.model} in {result.seconds:.1f} s"))
         return
     if not isinstance(error, RoomError):
         problem = ModelError(f"The model client failed unexpectedly ({type(error).__name__}).", "Run the stage again.")
@@ -217,14 +225,16 @@ def _answer(request: Request, prompt: Prompt, client: ModelClient, cancel: threa
     def call(sent: Prompt) -> str:
         reply = client.answer(sent, cancel, lambda text: put(AskEvent(request.key, "progress", text)))
         said.append((sent, reply))
+        if isinstance(reply, KeptReply):
+            put(AskEvent(request.key, "recalled", "the earlier answer is used again"))
         return reply.text
 
-    put(AskEvent(request.key, "asked", f"asking {client.name}"))
+    put(AskEvent(request.key, "asked", f"asking {name_of(client, prompt.stage)}"))
     text = ""
     try:
         text = call(prompt)
         reply, notes = validate_reply(text, request.reply)
-        return _result(request.key, reply, text, notes, said, started)
+        return _result(request.key, prompt, reply, text, notes, said, started)
     except ReplyError as error:
         first = error
     put(AskEvent(request.key, "repair", first.message))
@@ -233,26 +243,29 @@ def _answer(request: Request, prompt: Prompt, client: ModelClient, cancel: threa
         repaired = call(second)
         reply, notes = validate_reply(repaired, request.reply, salvage=True)
         notes = (f"The first answer could not be used: {first.message}", *notes)
-        return _result(request.key, reply, repaired, notes, said, started)
+        return _result(request.key, prompt, reply, repaired, notes, said, started)
     except ReplyError as error:
         last = error
     try:
         reply, notes = validate_reply(text, request.reply, salvage=True)
     except ReplyError:
         raise last if last.problems else first from None
-    return _result(request.key, reply, text, (f"The repair round failed: {last.message}", *notes), said, started)
+    return _result(
+        request.key, prompt, reply, text, (f"The repair round failed: {last.message}", *notes), said, started
+    )
 
 
 def _result(
     key: str,
+    prompt: Prompt,
     reply: BaseModel,
     text: str,
     notes: tuple[str, ...],
     said: list[tuple[Prompt, Reply]],
     started: float,
 ) -> AskResult:
-    """Put the tries together into one result."""
-    largest = max(len(prompt.text.encode()) for prompt, _ in said)
+    """Put the tries together into one result; a first try whose reply was cut is not among them."""
+    largest = max(len(sent.text.encode()) for sent, _ in said)
     if largest > PROMPT_LIMIT:
         notes = (*notes, f"The prompt's text was {largest / 1000:.0f} kB long.")
     costs = [answer.cost for _, answer in said if answer.cost is not None]
@@ -264,9 +277,9 @@ def _result(
         prompt_tokens=sum(answer.prompt_tokens for _, answer in said),
         completion_tokens=sum(answer.completion_tokens for _, answer in said),
         cost=sum(costs) if costs else None,
-        seconds=time.monotonic() - started,
+        seconds=time.monotonic() - started + sum(r.seconds for _, r in said if isinstance(r, KeptReply)),
         notes=tuple(note for _, answer in said for note in answer.notes) + notes,
-        prompt_bytes=sum(len(prompt.text.encode()) for prompt, _ in said),
-        prompt_hash=said[0][0].hash,
-        tries=len(said),
+        prompt_bytes=sum(len(sent.text.encode()) for sent, _ in said),
+        prompt_hash=prompt.hash,
+        tries=sum(not isinstance(answer, KeptReply) for _, answer in said),
     )

@@ -19,7 +19,7 @@ from pydantic import BaseModel, ValidationError
 
 from .artifacts.analysis import Calibration, SceneAnalysis
 from .artifacts.common import Artifact
-from .artifacts.corrections import Corrections
+from .artifacts.corrections import Corrections, Found, Rescaled
 from .artifacts.graph import MinorObjects, SceneGraph
 from .artifacts.hand import HandEdits
 from .artifacts.layout import LayoutProgram
@@ -28,7 +28,17 @@ from .errors import MemoryFormatError
 FORMAT = "code-as-room/memory/1"
 KINDS: dict[str, type[Artifact]] = {
     kind.__name__: kind
-    for kind in (SceneAnalysis, Calibration, SceneGraph, MinorObjects, LayoutProgram, HandEdits, Corrections)
+    for kind in (
+        SceneAnalysis,
+        Calibration,
+        SceneGraph,
+        MinorObjects,
+        LayoutProgram,
+        HandEdits,
+        Corrections,
+        Found,
+        Rescaled,
+    )
 }
 _CHUNK = 160
 _TEXT = "~text"
@@ -164,6 +174,11 @@ def load_memory(text: str) -> Memory:
 def _memory_from(data: Any) -> Memory:
     if not isinstance(data, Mapping) or data.get("format") != FORMAT:
         found = data.get("format") if isinstance(data, Mapping) else None
+        if _is_newer(found):
+            raise MemoryFormatError(
+                "This room was made with a newer version of Code-as-Room.",
+                "Install that version to go on; nothing was changed.",
+            )
         raise MemoryFormatError(
             f"The memory text has the format {found!r}; this version reads {FORMAT!r}.",
             "Open the file with the version of Code-as-Room that wrote it.",
@@ -183,6 +198,13 @@ def _memory_from(data: Any) -> Memory:
         raise MemoryFormatError(
             f"The memory text has an entry that does not fit: {place} {first['msg']}.", "Undo the edit."
         ) from error
+
+
+def _is_newer(found: Any) -> bool:
+    """Whether a memory's format is one that a later version writes."""
+    family, _, number = FORMAT.rpartition("/")
+    given, _, count = str(found).rpartition("/")
+    return given == family and count.isascii() and count.isdigit() and int(count[:9]) > int(number)
 
 
 def _refuse_constant(name: str) -> float:

@@ -16,21 +16,27 @@ from typing import Any, Literal
 
 from pydantic import BaseModel
 
-from .artifacts.corrections import Corrections
+from .artifacts.corrections import Found
 from .artifacts.hand import HandEdits
-from .artifacts.layout import LayoutEdit
+from .artifacts.layout import LayoutEdit, LayoutProgram
 from .ask import AskEvent, AskResult, perform_ask
-from .backend import SceneBackend
+from .backend import HandScene, SceneBackend
 from .errors import Cancelled, RoomError
-from .memory import EntryMeta, Memory, content_hash, dump_memory, now
-from .models.base import ModelClient, Prompt, Reply
+from .journal import AnswerJournal, JournalledClient, KeptAnswer
+from .memory import EntryMeta, Memory, dump_memory, now
+from .models.base import ModelClient, Prompt, Reply, name_of
 from .picture import ReferencePicture
+from .program.differences import merged
 from .program.patch import patch_text
+from .run_corrections import bring_up_to_date, corrections_of, edits_of, found_of, inputs_of, program_of
+from .run_partial import inputs_after
 from .stages import all_stages
 from .stages.base import Stage, View
 from .stages.wishes import Ask, Build, Render, Tell, Wish
 
-Status = Literal["not run", "done", "stale"]
+Status = Literal["not run", "answered", "done", "stale"]
+"""What became of a stage: "answered" when every question was answered but the result is not there, as after undo;
+running it again asks nothing. "stale" when what it was made from has changed since."""
 Progress = Callable[[str, int, int], None]
 
 
@@ -54,6 +60,7 @@ class Run:
     Attributes:
         progress: called with (what, step, steps) for the artist.
         cancel: set it to stop; the stage that runs ends with `Cancelled`.
+        journal: where answers are kept as they arrive, whatever becomes of the scene; None for none.
     """
 
     picture: ReferencePicture
@@ -63,6 +70,7 @@ class Run:
     progress: Progress = lambda what, step, steps: None
     cancel: threading.Event = field(default_factory=threading.Event)
     reports: list[StageReport] = field(default_factory=list)
+    journal: AnswerJournal | None = None
     _standing: str = ""
 
     def __post_init__(self) -> None:
@@ -75,17 +83,17 @@ class Run:
 
     def inputs(self, stage: Stage) -> dict[str, str]:
         """Hashes of everything that a stage depends on, by name."""
-        hashes = {"picture": self.picture.sha256[:20], "settings": content_hash(self.memory.settings)}
-        for read in stage.reads:
-            hashes[read.kind.__name__] = self.memory.hash_of(read.kind.__name__, read.stages or None)
-        return hashes
+        return inputs_of(self.memory, stage)
 
     def status(self, stage: Stage) -> Status:
-        """Whether a stage has run, and whether what it read has changed since."""
+        """What became of a stage; cheap, and without knowing which questions it would ask now."""
         entry = self.memory.latest_entry(stage.writes[0].__name__, (stage.id,))
-        if entry is None:
-            return "not run"
-        return "done" if entry.meta.inputs == self.inputs(stage) else "stale"
+        inputs = self.inputs(stage)
+        if entry is not None and entry.meta.inputs == inputs:
+            return "done"
+        if self.journal is not None and self.journal.has_finished(stage.id, name_of(self.client, stage.id), inputs):
+            return "answered"
+        return "not run" if entry is None else "stale"
 
     def view(self, stage: Stage, only: frozenset[str] | None = None) -> View:
         """The artifacts that a stage declared it reads.
@@ -95,32 +103,63 @@ class Run:
         """
         artifacts: dict[type[BaseModel], BaseModel] = {}
         for read in stage.reads:
-            found = self.memory.latest(read.kind, read.stages or None)
+            found = _current(self.memory, read.kind, read.stages)
             if found is not None:
                 artifacts[read.kind] = found
-        corrections = self.memory.latest(Corrections) or Corrections()
-        return View(self.picture, artifacts, dict(self.memory.settings), tuple(self.hand_edits()), corrections, only)
+        recalled: dict[type[BaseModel], BaseModel] = {}
+        for read in stage.recalls:
+            found = _current(self.memory, read.kind, read.stages)
+            if found is not None:
+                recalled[read.kind] = found
+        corrections = corrections_of(self.memory)
+        settings, edits = dict(self.memory.settings), tuple(self.hand_edits())
+        return View(self.picture, artifacts, settings, edits, corrections, only, recalled)
 
     def hand_edits(self) -> list[LayoutEdit]:
-        """All edits that the artist made by hand so far, oldest first."""
-        kept: list[LayoutEdit] = []
-        for entry in self.memory.entries:
-            if entry.type == HandEdits.__name__:
-                kept += HandEdits.model_validate(entry.output).edits
-        return kept
+        """All edits that the artist made by hand so far, oldest first, in the metres that hold now."""
+        return edits_of(self.memory)
 
     def take_over_edits(self) -> list[LayoutEdit]:
-        """Read the scene back: what was changed by hand goes to memory and into the program. Main thread only."""
-        edits = self.backend.read_back()
-        self._standing = self.backend.program_text()
-        if not edits:
+        """What was changed by hand, in the scene or in the program's text, goes to memory and into the program.
+
+        Main thread only. Where both changed one object the text counts; memory keeps the findings with the edits.
+
+        Raises:
+            ProgramError: the artist's text is outside the room language; nothing is changed.
+        """
+        backend = self.backend
+        hand = backend if isinstance(backend, HandScene) else None
+        typed = hand.text_edits() if hand is not None else None
+        seen = backend.read_back()
+        self._standing = backend.program_text()
+        if hand is not None and self._standing:
+            hand.hold(self._locked())
+        if typed is None and not seen:
             return []
-        text, _ = patch_text(self.backend.program_text(), edits)
-        self.memory.append("artist", HandEdits(edits=edits), EntryMeta(time=now(), model="artist"))
-        self.backend.build(text)
+        kept, findings = merged(typed or [], seen)
+        text, notes = patch_text(self._standing, kept)
+        if hand is not None and typed is not None:
+            hand.accept_text(renamed={e.id: e.new_id for e in typed if e.op == "rename" and e.new_id})
+        try:
+            backend.build(text)
+        except BaseException:
+            if hand is not None and typed is not None:
+                hand.accept_text(False)
+            raise
         self._standing = text
-        self.backend.save_memory(dump_memory(self.memory))
+        edits = [*(typed or []), *kept]
+        if edits or findings or notes:
+            entry = HandEdits(edits=edits, findings=[*findings, *notes])
+            self.memory.append("artist", entry, EntryMeta(time=now(), model="artist"))
+        if hand is not None:
+            hand.forget({edit.id for edit in edits if edit.op == "remove"})
+        backend.save_memory(dump_memory(self.memory))
         return edits
+
+    def _locked(self) -> frozenset[str]:
+        """Ids of the objects that no automatic step may change."""
+        edits = tuple(self.hand_edits())
+        return View(self.picture, hand_edits=edits, corrections=corrections_of(self.memory)).locked
 
     def put_back(self) -> None:
         """After a stage that did not end: the room that stood before it stands again. Main thread only.
@@ -130,15 +169,16 @@ class Run:
         if self._standing and self.backend.program_text() != self._standing:
             self.backend.build(self._standing)
 
-    def begin(self, stage: Stage, fresh: bool = False) -> StageSession:
+    def begin(self, stage: Stage, fresh: bool = False, only: frozenset[str] | None = None) -> StageSession:
         """Start a stage; hand edits are taken over first. Main thread only.
 
         Args:
             fresh: ask again even where memory holds an answer to the same question (the artist's "redo").
+            only: ids of the objects that are to be done anew, None for all.
         """
         self.take_over_edits()
         self.cancel.clear()
-        return StageSession(self, stage, fresh)
+        return StageSession(self, stage, fresh, only)
 
     def run_stage(self, stage: Stage) -> StageReport:
         """Run one stage to its end, blocking.
@@ -161,6 +201,7 @@ class Run:
         Raises:
             Cancelled: the run was stopped, also between two stages; else as `run_stage`.
         """
+        bring_up_to_date(self)
         done: list[StageReport] = []
         for stage in stages if stages is not None else all_stages():
             if self.status(stage) != "done":
@@ -170,16 +211,39 @@ class Run:
         return done
 
 
-class StageSession:
-    """One stage on its way. `wish` is what it waits for, None when it has finished."""
+def _current(memory: Memory, kind: type[BaseModel], stages: tuple[str, ...] = ()) -> BaseModel | None:
+    """The artifact of this type as it counts now; a layout program in the metres that hold since."""
+    if kind is Found:
+        return found_of(memory)
+    return program_of(memory, stages) if kind is LayoutProgram else memory.latest(kind, stages or None)
 
-    def __init__(self, run: Run, stage: Stage, fresh: bool = False) -> None:
-        self.run, self.stage, self._fresh = run, stage, fresh
+
+class StageSession:
+    """One stage on its way. `wish` is what it waits for, None when it has finished.
+
+    Args:
+        waits: keep the result back until `apply`.
+    """
+
+    def __init__(
+        self,
+        run: Run,
+        stage: Stage,
+        fresh: bool = False,
+        only: frozenset[str] | None = None,
+        waits: bool = False,
+    ) -> None:
+        self.run, self.stage, self._fresh, self._only = run, stage, fresh, only
         self._inputs = run.inputs(stage)
+        self._waits, self._written = waits, list[BaseModel]()
+        self._asks = name_of(run.client, stage.id)
+        self._client = run.client
+        if run.journal is not None:
+            self._client = JournalledClient(run.client, run.journal, self._inputs, fresh)
         self._started, self._asking = time.monotonic(), 0.0
         self._asked: list[AskResult] = []
         self._notes: list[str] = []
-        self._generator = stage.run(run.view(stage))
+        self._generator = stage.run(run.view(stage, only))
         self.wish: Wish | None = None
         self.finished = False
         self._advance(lambda: next(self._generator))
@@ -204,7 +268,9 @@ class StageSession:
         began = time.monotonic()
         run = self.run
         try:
-            results = perform_ask(wish, self.stage.id, run.client, run.cancel, self._recall, self._keep, on_event)
+            results = perform_ask(
+                wish, self.stage.id, self._client, run.cancel, self._recall, self._keep, on_event, self._refuse
+            )
         finally:
             self._asking += time.monotonic() - began
         for result in results:
@@ -250,31 +316,44 @@ class StageSession:
             self.wish = move()
         except StopIteration as stop:
             self.wish, self.finished = None, True
-            self._write(stop.value)
+            self._written = stop.value
+            if self.run.journal is not None and self._only is None:
+                self.run.journal.finish(self.stage.id, self._asks, self._inputs)
+            if not self._waits:
+                self.apply()
         except BaseException:
             self.wish, self.finished = None, True
             self.run.backend.save_memory(dump_memory(self.run.memory))
             raise
 
-    def _write(self, artifacts: list[BaseModel]) -> None:
-        """Append what the stage wrote, with what it was made from, and keep the memory's text."""
+    @property
+    def is_outdated(self) -> bool:
+        """Whether what the stage was made from is not what the run has now."""
+        return self.run.inputs(self.stage) != self._inputs
+
+    def apply(self) -> None:
+        """Append what the stage wrote, with what it was made from, and keep the memory's text.
+
+        A session that `waits` is applied by its driver, which looks first whether it is outdated; others apply themselves.
+        """
+        inputs = self._inputs if self._only is None else inputs_after(self.run.memory, self.stage, self._only)
         meta = EntryMeta(
             time=now(),
-            client=self.run.client.name,
-            model=", ".join(sorted({r.model for r in self._asked})) or self.run.client.name,
+            client=self._asks,
+            model=", ".join(sorted({r.model for r in self._asked})) or self._asks,
             prompt_tokens=sum(r.prompt_tokens for r in self._asked),
             completion_tokens=sum(r.completion_tokens for r in self._asked),
             seconds=round(time.monotonic() - self._started, 3),
-            inputs=self._inputs,
+            inputs=inputs,
             notes=self._notes,
         )
-        for artifact in artifacts:
+        for artifact in self._written:
             self.run.memory.append(self.stage.id, artifact, meta)
         self.run.reports.append(self.report())
         self.run.backend.save_memory(dump_memory(self.run.memory))
 
     def _recall(self, prompt: Prompt) -> Reply | None:
-        kept = None if self._fresh else self.run.memory.answer(prompt.hash, self.run.client.name)
+        kept = None if self._fresh else self.run.memory.answer(prompt.hash, self._asks)
         if kept is None:
             return None
         return Reply(text=str(kept.output.get("text", "")), model=kept.meta.model)
@@ -289,7 +368,37 @@ class StageSession:
             cost=result.cost,
             seconds=round(result.seconds, 3),
             prompt_hash=result.prompt_hash,
-            client=self.run.client.name,
+            client=self._asks,
+            inputs=self._inputs,
             notes=list(result.notes),
         )
         self.run.memory.keep_answer(self.stage.id, result.key, result.text, meta)
+        self._settle(result)
+
+    def _settle(self, result: AskResult) -> None:
+        """See to it that the journal holds this answer too where the first try's reply was cut and kept by nobody."""
+        journal, client = self.run.journal, self._asks
+        if journal is None or journal.answer(result.prompt_hash, client) is not None:
+            return
+        journal.keep(
+            KeptAnswer(
+                stage=self.stage.id,
+                key=result.key,
+                client=client,
+                prompt_hash=result.prompt_hash,
+                text=result.text,
+                model=result.model,
+                prompt_tokens=result.prompt_tokens,
+                completion_tokens=result.completion_tokens,
+                cost=result.cost,
+                seconds=round(result.seconds, 3),
+                time=now(),
+                notes=result.notes,
+                inputs=self._inputs,
+            )
+        )
+
+    def _refuse(self, key: str) -> None:
+        """The answers to this request stayed unusable."""
+        if self.run.journal is not None:
+            self.run.journal.refuse(self.stage.id, key, self._asks, self._inputs)
