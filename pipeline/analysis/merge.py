@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ..artifacts.analysis import DetectedObject, Finding, SceneAnalysis
 from ..artifacts.common import ImageBox
 from ..artifacts.replies import BoxReply, CorrectionReply, MissedReply, SecondLookReply
@@ -33,7 +35,7 @@ def merge_second_look(analysis: SceneAnalysis, reply: SecondLookReply, crops: li
         crops: for each picture of the request, what part of the whole it shows; None for the whole.
     """
     findings = list(analysis.findings)
-    objects = _corrected(list(analysis.objects), reply.corrections, findings)
+    objects = with_corrections(analysis.objects, reply.corrections, findings)
     taken = {o.id for o in objects} | {a.id for a in analysis.architecture}
     named: dict[str, str] = {}
     for missed in reply.missed:
@@ -81,9 +83,11 @@ def _same(a: DetectedObject, b: DetectedObject) -> bool:
     return bool(set(a.category.lower().split()) & set(b.category.lower().split()))
 
 
-def _corrected(
-    objects: list[DetectedObject], corrections: list[CorrectionReply], findings: list[Finding]
+def with_corrections(
+    found: Sequence[DetectedObject], corrections: Sequence[CorrectionReply], findings: list[Finding]
 ) -> list[DetectedObject]:
+    """The objects with better boxes and names, and without those that are taken back; all of it is reported."""
+    objects = list(found)
     index = {o.id: i for i, o in enumerate(objects)}
     dropped: set[str] = set()
     for fix in corrections:

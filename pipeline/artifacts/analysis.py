@@ -93,6 +93,7 @@ class SceneAnalysis(Artifact):
         floor: floor outline in metres, counter-clockwise, origin at its bounding rectangle's centre.
         floor_polygon: the same corners in the picture, in the same order, at floor level.
         wall_top_polygon: inner upper edges of the same walls in the picture, same order, or None.
+        left_out: objects that were found and that the artist wants left out of the room.
     """
 
     image_size: tuple[int, int]
@@ -105,6 +106,7 @@ class SceneAnalysis(Artifact):
     zones: list[Zone] = []
     architecture: list[ArchitectureItem] = []
     objects: list[DetectedObject] = []
+    left_out: list[DetectedObject] = []
     findings: list[Finding] = []
 
 

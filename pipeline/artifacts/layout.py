@@ -131,11 +131,13 @@ class LayoutEdit(Artifact):
     """One typed edit of the layout; only the fields that the kind uses are given.
 
     Attributes:
-        op: move (centre), resize (size), turn (yaw), add (all), remove, recategorise (category), rename (new_id),
-            reparent (placement and parent), line (the printed layout line that stands from now on for this id: a wall,
-            door, window, opening, light or camera, or "room"; `remove` takes such a line away).
+        op: move (centre), resize (size), turn (yaw), add (all, or line), remove, recategorise (category, label, salience,
+            shape), rename (new_id), reparent (placement and parent), line (the printed layout line that stands from now
+            on for this id: a wall, door, window, opening, light or camera, or "room"). `add` with a line makes such a
+            thing, `remove` takes it away.
         reason: why, in a few words.
-        origin: who asked: "model", "solver", "artist".
+        origin: who asked: "model", "solver", "artist"; "parent" for what only moved along with what the artist moved,
+            which does not lock it.
     """
 
     op: Literal["move", "resize", "turn", "add", "remove", "recategorise", "rename", "reparent", "line"]
@@ -152,7 +154,7 @@ class LayoutEdit(Artifact):
     new_id: str | None = None
     line: str | None = None
     reason: str = ""
-    origin: Literal["model", "solver", "artist"] = "model"
+    origin: Literal["model", "solver", "artist", "parent"] = "model"
 
 
 class Score(Artifact):

@@ -20,6 +20,8 @@ from .walls import NAMES, along, point_on
 
 WALL_REACH = 0.9
 FREE_PICTURE_Z = 1.5
+RUG = 0.06
+"""Height in metres below which a thing on the floor is so flat that others stand on it."""
 
 
 def top_of(proxy: ProxyLine) -> float:
@@ -161,7 +163,7 @@ def _along_wall(item: DetectedObject, wall: WallLine) -> tuple[float, float, flo
 
 def rug_like(item: DetectedObject) -> bool:
     """Whether a thing on the floor is so flat that others stand on it."""
-    return item.placement == "floor" and item.size[2] < 0.06
+    return item.placement == "floor" and item.size[2] < RUG
 
 
 def crowded(proxy: ProxyLine, others: Sequence[ProxyLine]) -> str | None:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 from ..artifacts.analysis import Finding
 from ..artifacts.layout import Layout, LayoutEdit, ProxyLine
-from ..program.patch import apply_edits
+from ..program.edits import LISTS, ROOM, apply_edits
 
 
 @dataclass
@@ -75,7 +75,7 @@ def apply_hand_edits(layout: Layout, edits: Sequence[LayoutEdit], done: int = 0)
         done: how many edits, from the beginning of the history, the layout holds already.
     """
     threads = _threads(edits)
-    present = {p.id for p in layout.proxies}
+    present = {p.id for p in layout.proxies} | {line.id for name in LISTS for line in getattr(layout, name)} | {ROOM}
     known = {name for t in threads if (name := t.name_after(done)) in present}
     todo: list[tuple[int, LayoutEdit]] = []
     for thread in threads:
@@ -84,7 +84,7 @@ def apply_hand_edits(layout: Layout, edits: Sequence[LayoutEdit], done: int = 0)
         elif thread.added and thread.now is not None:
             # What was added by hand and was found since (another analysis saw it) is not added again.
             found = thread.name in present - known
-            todo += [step for step in thread.steps if step[1].op != "add" or not found]
+            todo += [step for step in thread.steps if step[1].op != "add" or step[1].line or not found]
     return apply_edits(layout, [edit for _, edit in sorted(todo, key=lambda step: step[0])])
 
 

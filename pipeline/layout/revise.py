@@ -31,16 +31,24 @@ class Sanitised:
 
 
 def sanitise(
-    reply: CritiqueReply, layout: Layout, evidence: Evidence, calibration: Calibration, locked: frozenset[str]
+    reply: CritiqueReply,
+    layout: Layout,
+    evidence: Evidence,
+    calibration: Calibration,
+    locked: frozenset[str],
+    only: frozenset[str] | None = None,
 ) -> Sanitised:
     """Keep what can be done and is not against strong evidence; everything else is reported.
 
     Refused: unknown ids, architecture, locked objects, boxes outside the picture or without room on the floor, removal
-    of what was clearly seen, moves to where the first detection sees nothing of it.
+    of what was clearly seen, moves to where the first detection sees nothing of it; with `only`, whatever is not of it.
     """
     edits: list[LayoutEdit] = []
     refused: list[Finding] = []
     for asked in reply.edits[:MAX_EDITS]:
+        if only is not None and (asked.op == "add" or asked.id not in only):
+            refused.append(Finding(about=asked.id, message=f"The critic wants to {asked.op} it, but it is not chosen."))
+            continue
         result = _one(asked, layout, evidence, calibration, locked)
         if isinstance(result, Finding):
             refused.append(result)
@@ -62,7 +70,9 @@ def _one(
     if proxy is None or item is None:
         return Finding(about=asked.id, message=f"The critic wants to {asked.op} {asked.id!r}, which is not a proxy.")
     if asked.id in locked:
-        return Finding(about=asked.id, message=f"The critic wants to {asked.op} it, but it was edited by hand.")
+        return Finding(
+            about=asked.id, message=f"The critic wants to {asked.op} it, but it is locked or edited by hand."
+        )
     if asked.op == "remove":
         if item.confidence >= SURE:
             return Finding(about=asked.id, message="The critic wants to remove it, but it was clearly seen.")

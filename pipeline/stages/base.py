@@ -3,15 +3,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import TypeVar
 
 from pydantic import BaseModel
 
+from ..artifacts.analysis import SceneAnalysis
 from ..artifacts.corrections import Corrections
 from ..artifacts.layout import LayoutEdit
 from ..errors import RoomError
+from ..layout.hand import name_now
 from ..picture import ReferencePicture
 from .wishes import StageRun
 
@@ -34,6 +36,7 @@ class View:
         settings: the artist's numbers and wishes as text ("known_width_m", "wall_height_m", "iterations", "target").
         hand_edits: what the artist changed by hand so far; their objects are locked.
         corrections: what the artist corrected of the analysis.
+        recalled: what the stage may look at without depending on it, in the metres that hold now.
         only: ids of the objects that are to be done anew, everything else is frozen; None for all.
     """
 
@@ -43,6 +46,30 @@ class View:
     hand_edits: tuple[LayoutEdit, ...] = ()
     corrections: Corrections = field(default_factory=Corrections)
     only: frozenset[str] | None = None
+    recalled: Mapping[type[BaseModel], BaseModel] = field(default_factory=dict)
+
+    def recall(self, kind: type[A]) -> A | None:
+        """An artifact that the stage does not depend on, None when there is none."""
+        found = self.recalled.get(kind)
+        return found if isinstance(found, kind) else None
+
+    def names(self, analysis: SceneAnalysis) -> dict[str, str | None]:
+        """What the artist calls each detected object by now, None when it was removed by hand; left out ones too."""
+        return {o.id: name_now(self.hand_edits, o.id) for o in [*analysis.objects, *analysis.left_out]}
+
+    def chosen(self, identifier: str) -> bool:
+        """Whether a detected object is to be done anew, whatever the artist calls it by now."""
+        return self.only is None or not self.only.isdisjoint((identifier, name_now(self.hand_edits, identifier)))
+
+    def noted(self, ids: Iterable[str]) -> str:
+        """The artist's notes on these objects for a question about them, "" when there are none."""
+        asked = set(ids)
+        notes = []
+        for said in self.corrections.objects:
+            name = next((i for i in (said.id, name_now(self.hand_edits, said.id)) if i in asked), None)
+            if said.note and name is not None:
+                notes.append(f"{name}: {said.note}")
+        return "\n\nThe artist says of these:\n" + "\n".join(notes) if notes else ""
 
     def need(self, kind: type[A]) -> A:
         """The artifact of this type; RoomError names the missing step when an earlier stage has not run."""
@@ -64,17 +91,37 @@ class View:
     @property
     def locked(self) -> frozenset[str]:
         """Ids of objects that no automatic step may change: edited by hand or locked, and not unlocked since."""
-        edited = {edit.new_id or edit.id for edit in self.hand_edits}
-        said = {c.id: c.locked for c in self.corrections.objects if c.locked is not None}
-        return frozenset((edited | {i for i, on in said.items() if on}) - {i for i, on in said.items() if not on})
+        edited = {edit.new_id or edit.id for edit in self.hand_edits if edit.origin != "parent"}
+        return frozenset((edited | self._said(True)) - self.freed)
+
+    @property
+    def freed(self) -> frozenset[str]:
+        """Ids of objects that the artist unlocked."""
+        return self._said(False)
+
+    def _said(self, locked: bool) -> frozenset[str]:
+        """Ids of objects that the artist locked or unlocked, under the names that they had then and have now."""
+        ids = {c.id for c in self.corrections.objects if c.locked is locked}
+        return frozenset(ids | {name for i in ids if (name := name_now(self.hand_edits, i)) is not None})
 
 
 @dataclass(frozen=True)
 class Stage:
-    """A stage: its id, its title for the artist, what it reads and writes, and its generator."""
+    """A stage: its id, its title for the artist, what it reads and writes, and its generator.
+
+    Attributes:
+        settings: names of the settings that it uses; a change of another one does not make it stale.
+        notes: whether it asks the model about objects, so that the artist's notes on them go along.
+        partial: whether it can do chosen objects anew and leave the rest (`View.only`).
+        recalls: what it may look at without depending on it, such as what it wrote itself the last time.
+    """
 
     id: str
     title: str
     reads: tuple[Reads, ...]
     writes: tuple[type[BaseModel], ...]
     run: Callable[[View], StageRun]
+    settings: tuple[str, ...] = ()
+    notes: bool = False
+    partial: bool = False
+    recalls: tuple[Reads, ...] = ()

@@ -41,7 +41,10 @@ def _request(view: View, analysis: SceneAnalysis, walls: list[WallLine]) -> Requ
         key="02_graph",
         prompt="02_graph",
         reply=GraphReply,
-        values={"objects": objects, "walls": ", ".join(w.id for w in walls)},
+        values={
+            "objects": objects + view.noted(o.id for o in analysis.objects),
+            "walls": ", ".join(w.id for w in walls),
+        },
         images=(Picture("boxes", picture),),
     )
 
@@ -104,4 +107,5 @@ STAGE = Stage(
     reads=(Reads(SceneAnalysis), Reads(Calibration)),
     writes=(SceneGraph, MinorObjects),
     run=run,
+    notes=True,
 )

@@ -14,14 +14,16 @@ from ..artifacts.analysis import Calibration, Finding, SceneAnalysis
 from ..artifacts.graph import SceneGraph
 from ..artifacts.layout import Iteration, Layout, LayoutEdit, LayoutProgram, Score
 from ..artifacts.replies import CritiqueReply
+from ..errors import RoomError
 from ..layout.hand import apply_hand_edits, name_now, place_edited
 from ..layout.initial import Evidence, first_layout, is_major
 from ..layout.overlay import draw_outlines
+from ..layout.pins import pinned
 from ..layout.placed import tucked_pairs
 from ..layout.revise import Sanitised, revise, sanitise
 from ..layout.score import Expected, measure, with_model
 from ..layout.solve import solve
-from ..program.lines import print_layout
+from ..program.lines import parse_layout, print_layout
 from .base import Reads, Stage, View
 from .wishes import Ask, Build, Picture, Render, Request, StageRun, Tell, Wish
 
@@ -47,19 +49,24 @@ class _State:
 
 @dataclass
 class _Loop:
-    """What the loop has tried so far, and the best of it."""
+    """What the loop has tried so far, and the best of it.
+
+    Attributes:
+        frozen: ids that stay as they are; chosen: ids that are done anew, None for all.
+    """
 
     view: View
     calibration: Calibration
     graph: SceneGraph
     t_max: int
     target: float
+    frozen: frozenset[str]
+    chosen: frozenset[str] | None = None
     iterations: list[Iteration] = field(default_factory=list)
     best: _State | None = None
 
     def run(self, layout: Layout, evidence: Evidence) -> Generator[Wish, Any, _State]:
         """Render, measure, critique and revise; returns the best state."""
-        layout = apply_hand_edits(layout, self.view.hand_edits)[0]
         asked: list[LayoutEdit] = []
         for number in range(self.t_max + 1):
             layout, notes = self._solved(layout, evidence)
@@ -77,7 +84,7 @@ class _Loop:
                 break
             rendered = yield Render(self.calibration.camera, labels=True)
             [reply] = yield Ask((self._request(state, rendered, problems),))
-            wanted = sanitise(reply, layout, evidence, self.calibration, self.view.locked)
+            wanted = sanitise(reply, layout, evidence, self.calibration, self.view.locked, self.chosen)
             state = _State(number, layout, evidence, with_model(score, reply.score), notes)
             self.best = state
             self._note(state, text, reply, wanted)
@@ -110,7 +117,7 @@ class _Loop:
 
     def _solved(self, layout: Layout, evidence: Evidence) -> tuple[Layout, list[Finding]]:
         confidence = {i: o.confidence for i, o in evidence.objects.items()}
-        return solve(layout, tucked_pairs(self.graph.edges, layout.proxies), self.view.locked, confidence)
+        return solve(layout, tucked_pairs(self.graph.edges, layout.proxies), self.frozen, confidence)
 
     def _expected(self, layout: Layout, evidence: Evidence) -> Expected:
         ids = [o.id for o in evidence.objects.values() if is_major(o)]
@@ -121,17 +128,23 @@ class _Loop:
 
     def _request(self, state: _State, rendered: bytes, problems: list[str]) -> Request:
         picture = self.view.reference.for_model()
-        overlay = draw_outlines(picture, self.calibration.camera, state.layout.proxies)
+        told = [p for p in state.layout.proxies if self.chosen is None or p.id in self.chosen]
+        overlay = draw_outlines(picture, self.calibration.camera, told)
         lines = [
             f"{p.id}, {p.category}, {p.centre[0]:.2f} {p.centre[1]:.2f}, "
             f"{p.size[0]:.2f} {p.size[1]:.2f} {p.size[2]:.2f}, {p.yaw:.0f}"
-            for p in state.layout.proxies
+            for p in told
         ]
+        said = self.view.noted(p.id for p in told)
+        if self.chosen is not None:
+            chosen = self.chosen
+            problems = [p for p in problems if not chosen.isdisjoint(p.split())]
+            said = "\n\nOnly these are judged now; everything else stays as it is." + said
         return Request(
             key=f"03_critique/{state.number}",
             prompt="03_critique",
             reply=CritiqueReply,
-            values={"layout": "\n".join(lines), "problems": "; ".join(problems[:20]) or "none"},
+            values={"layout": "\n".join(lines) + said, "problems": "; ".join(problems[:20]) or "none"},
             images=(Picture("reference", picture), Picture("layout", rendered), Picture("overlay", overlay)),
         )
 
@@ -153,8 +166,18 @@ def run(view: View) -> StageRun:
     analysis, calibration, graph = view.need(SceneAnalysis), view.need(Calibration), view.need(SceneGraph)
     evidence = Evidence({o.id: o for o in analysis.objects})
     layout, findings = first_layout(analysis, calibration, evidence)
+    layout = apply_hand_edits(layout, view.hand_edits)[0]
+    standing = _standing(view)
+    frozen, chosen = view.locked, None
+    if view.only is not None:
+        layout, chosen = _renewed(view, analysis, layout, standing)
+        if not chosen:
+            return [_kept(view, layout)]
+        frozen |= {p.id for p in layout.proxies} - chosen
+    elif standing is not None:
+        layout = pinned(layout, standing, view.locked, view.names(analysis).values())
     target = view.number("target") or TARGET
-    loop = _Loop(view, calibration, graph, _rounds(view), target)
+    loop = _Loop(view, calibration, graph, _rounds(view), target, frozen, chosen)
     best = yield from loop.run(layout, evidence)
     program = LayoutProgram(
         text=print_layout(best.layout),
@@ -166,6 +189,43 @@ def run(view: View) -> StageRun:
         hand_edits=len(view.hand_edits),
     )
     return [program]
+
+
+def _standing(view: View) -> Layout | None:
+    """The layout that this stage made the last time, with all hand edits since."""
+    program = view.recall(LayoutProgram)
+    if program is None:
+        return None
+    return apply_hand_edits(parse_layout(program.text), view.hand_edits, program.hand_edits)[0]
+
+
+def _renewed(
+    view: View, analysis: SceneAnalysis, fresh: Layout, standing: Layout | None
+) -> tuple[Layout, frozenset[str]]:
+    """The standing layout with the chosen objects as they are measured now, and which those are.
+
+    Raises:
+        RoomError: there is no layout yet that the others could be kept from.
+    """
+    if standing is None:
+        raise RoomError("There is no layout yet in which single objects could be redone.", "Run the whole stage first.")
+    names = view.names(analysis)
+    majors = [o.id for o in analysis.objects if is_major(o) and view.chosen(o.id)]
+    chosen = frozenset(name for i in majors if (name := names[i]) is not None) - view.locked
+    gone = {names[o.id] for o in analysis.left_out if view.chosen(o.id)}
+    proxies = [(fresh.proxy(p.id) if p.id in chosen else None) or p for p in standing.proxies if p.id not in gone]
+    present = {p.id for p in proxies}
+    proxies += [p for p in fresh.proxies if p.id in chosen and p.id not in present]
+    return standing.model_copy(update={"proxies": proxies}), chosen
+
+
+def _kept(view: View, layout: Layout) -> LayoutProgram:
+    """What this stage wrote before, where nothing of what is chosen is placed by it."""
+    before = view.recall(LayoutProgram)
+    assert before is not None
+    message = "Nothing that was chosen is placed by this stage; it was left as it is."
+    update = {"text": print_layout(layout), "findings": [Finding(about="layout", message=message)]}
+    return before.model_copy(update={**update, "hand_edits": len(view.hand_edits)})
 
 
 def _rounds(view: View) -> int:
@@ -180,4 +240,8 @@ STAGE = Stage(
     reads=(Reads(SceneAnalysis), Reads(Calibration), Reads(SceneGraph)),
     writes=(LayoutProgram,),
     run=run,
+    settings=("iterations", "target"),
+    notes=True,
+    partial=True,
+    recalls=(Reads(LayoutProgram, (ID,)),),
 )

@@ -9,31 +9,44 @@ from ..analysis.look import numbered_boxes
 from ..artifacts.analysis import Calibration, DetectedObject, Finding, SceneAnalysis
 from ..artifacts.layout import Layout, LayoutEdit, LayoutProgram, LedgerEntry, ProxyLine
 from ..artifacts.replies import AuxiliaryPlacementReply, AuxiliaryReply
+from ..errors import RoomError
 from ..layout import auxiliary as place
 from ..layout.hand import apply_hand_edits, name_now, place_edited
 from ..layout.initial import is_major
+from ..layout.pins import pinned, with_known_parent
 from ..layout.solve import settle_minor
 from ..program.lines import parse_layout, print_layout
 from .base import Reads, Stage, View
 from .wishes import Ask, Build, Picture, Request, StageRun, Tell
 
 ID = "s04_auxiliary"
+LEFT_OUT = "left out by the artist"
 
 
 @dataclass
 class _Placing:
-    """The layout as it grows, and what became of each object."""
+    """The layout as it grows, and what became of each object.
+
+    Attributes:
+        standing: what this stage made the last time, with all hand edits since; None the first time.
+        kept: ids that stay as they stand, where nothing that carries them moved. `locked` ones stay in any case.
+        freed: ids that the artist unlocked: the solver may move them from where they were put by hand.
+    """
 
     layout: Layout
     calibration: Calibration
     locked: frozenset[str]
     edits: tuple[LayoutEdit, ...] = ()
+    standing: Layout | None = None
+    kept: frozenset[str] = frozenset()
+    freed: frozenset[str] = frozenset()
     ledger: dict[str, LedgerEntry] = field(default_factory=dict)
     findings: list[Finding] = field(default_factory=list)
 
     def add(self, item: DetectedObject) -> bool:
         """Place one object; False when what it stands on or hangs from is not known."""
-        if name_now(self.edits, item.id) is None:
+        name = name_now(self.edits, item.id)
+        if name is None or self._pin(name):
             self.note_placed(item)
             return True
         result = self._proxy(item.model_copy(update={"parent": self._parent(item.parent)}))
@@ -50,8 +63,32 @@ class _Placing:
             )
         self.layout, notes = place_edited(self.layout, proxy, self.edits)
         self.findings += notes
+        if name in self.freed:
+            self._settle(name)
         self.note_placed(item)
         return True
+
+    def _pin(self, name: str) -> bool:
+        """Put an object where it stands, when it is to stay there."""
+        there = None if self.standing is None else self.standing.proxy(name)
+        if there is None or self.standing is None or self.layout.proxy(name) is not None:
+            return False
+        carrier = there.parent and self.standing.proxy(there.parent)
+        carried = not carrier or self.layout.proxy(carrier.id) == carrier
+        if name not in self.locked and not (name in self.kept and carried):
+            return False
+        proxy = with_known_parent(there, self.layout)
+        self.layout = self.layout.model_copy(update={"proxies": [*self.layout.proxies, proxy]})
+        return True
+
+    def _settle(self, name: str) -> None:
+        """What was unlocked is settled like anything else, from where the artist had put it."""
+        proxy = self.layout.proxy(name)
+        if proxy is not None and proxy.placement == "floor" and proxy.size[2] >= place.RUG:
+            others = [p for p in self.layout.proxies if p.id != name]
+            settled = settle_minor(proxy, self.layout.model_copy(update={"proxies": others}), self.locked)
+            proxies = [settled if p.id == name else p for p in self.layout.proxies]
+            self.layout = self.layout.model_copy(update={"proxies": proxies})
 
     def _parent(self, identifier: str | None) -> str | None:
         """What a detected parent is called by now."""
@@ -87,23 +124,43 @@ def run(view: View) -> StageRun:
     analysis, calibration = view.need(SceneAnalysis), view.need(Calibration)
     before = view.need(LayoutProgram)
     layout, early = apply_hand_edits(parse_layout(before.text), view.hand_edits, before.hand_edits)
-    placing = _Placing(layout, calibration, view.locked, view.hand_edits)
+    standing, ledger_before = _standing(view)
+    names = view.names(analysis)
+    kept = frozenset[str]()
+    if view.only is not None:
+        if standing is None:
+            raise RoomError(
+                "There is no layout yet in which single objects could be redone.", "Run the whole stage first."
+            )
+        kept = frozenset(n for o in analysis.objects if not view.chosen(o.id) and (n := names[o.id]) is not None)
+    placing = _Placing(layout, calibration, view.locked, view.hand_edits, standing, kept, view.freed)
+    for item in analysis.left_out:
+        placing.note(item, "dropped", LEFT_OUT)
     for item in analysis.objects:
         if is_major(item):
             placing.note_placed(item)
     yield Tell("Placing what stands on, hangs from or lies on something", 1, 2)
-    waiting = [o for o in place.order_by_depth(analysis.objects) if not is_major(o)]
-    asked = [o for o in waiting if not placing.add(o)]
+    asked = []
+    for item in place.order_by_depth(analysis.objects):
+        if is_major(item) or placing.add(item):
+            continue
+        earlier = ledger_before.get(item.id)
+        if names[item.id] in kept and earlier is not None and earlier.state != "placed":
+            placing.ledger[item.id] = earlier
+        else:
+            asked.append(item)
     if asked:
         [reply] = yield Ask((_request(view, asked, placing.layout),))
         _place_answered(placing, asked, reply)
     # What the artist put on something that was placed only now could not be added before.
     layout, late = apply_hand_edits(placing.layout, view.hand_edits, len(view.hand_edits))
+    if standing is not None:
+        layout = pinned(layout, standing, view.locked - {p.id for p in layout.proxies}, names.values())
     unusable = [f for f in early if f.severity != "warning" or layout.proxy(f.about) is None]
     text = print_layout(layout)
     yield Tell("Building the room", 2, 2)
     yield Build(text)
-    ledger = [placing.ledger[o.id] for o in analysis.objects]
+    ledger = [placing.ledger[o.id] for o in [*analysis.objects, *analysis.left_out]]
     program = before.model_copy(
         update={
             "text": text,
@@ -115,6 +172,15 @@ def run(view: View) -> StageRun:
         }
     )
     return [program]
+
+
+def _standing(view: View) -> tuple[Layout | None, dict[str, LedgerEntry]]:
+    """The layout that this stage made the last time, with all hand edits since, and what became of each object then."""
+    program = view.recall(LayoutProgram)
+    if program is None:
+        return None, {}
+    layout, _ = apply_hand_edits(parse_layout(program.text), view.hand_edits, program.hand_edits)
+    return layout, {entry.id: entry for entry in program.ledger}
 
 
 def _place_answered(placing: _Placing, asked: list[DetectedObject], reply: AuxiliaryReply) -> None:
@@ -153,7 +219,7 @@ def _request(view: View, asked: list[DetectedObject], layout: Layout) -> Request
         key="04_auxiliary",
         prompt="04_auxiliary",
         reply=AuxiliaryReply,
-        values={"questions": questions, "furniture": furniture},
+        values={"questions": questions + view.noted(o.id for o in asked), "furniture": furniture},
         images=(Picture("boxes", numbered_boxes(view.reference, asked)),),
     )
 
@@ -164,4 +230,7 @@ STAGE = Stage(
     reads=(Reads(SceneAnalysis), Reads(Calibration), Reads(LayoutProgram, ("s03_layout",))),
     writes=(LayoutProgram,),
     run=run,
+    notes=True,
+    partial=True,
+    recalls=(Reads(LayoutProgram, (ID,)),),
 )

@@ -160,7 +160,7 @@ def test_a_stopped_second_run_leaves_the_room_that_stood(run: Run, answers: Any,
         return {"score": 10, "edits": []}
 
     answers.by_key["03_critique"] = stop
-    run.memory.settings["notes"] = "once more"
+    run.memory.settings["iterations"] = "4"
     with pytest.raises(Cancelled):
         run.run_all()
     assert len(scene.built) > 3 and scene.text == stood

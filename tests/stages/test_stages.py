@@ -72,9 +72,13 @@ def test_stale_marks_follow_a_change_upstream(run: Run) -> None:
     run.run_all()
     assert [run.status(s) for s in all_stages()] == ["done"] * 4
     assert run.run_all() == []
+    run.memory.settings["notes"] = "A guest room."
+    assert [run.status(s) for s in all_stages()] == ["stale", "done", "done", "done"]
+    run.memory.settings["iterations"] = "2"
+    assert [run.status(s) for s in all_stages()] == ["stale", "done", "stale", "done"]
     run.memory.settings["known_width_m"] = "5.0"
-    assert {run.status(s) for s in all_stages()} == {"stale"}
     run.run_all()
+    assert [run.status(s) for s in all_stages()] == ["done"] * 4
     width = max(p[0] for p in run.memory.latest(Calibration).floor) * 2  # type: ignore[union-attr]
     assert width == pytest.approx(5.0, abs=0.01)
 
