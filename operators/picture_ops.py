@@ -10,7 +10,8 @@ import bpy
 from ..pipeline.errors import RoomError
 from ..pipeline.memory import Memory, load_memory
 from ..pipeline.picture import ReferencePicture, load_picture
-from . import driver, reference, rooms, view_state
+from ..pipeline.scene.reference_camera import IMAGE_MARK
+from . import driver, fitted_view, own_room, reference, rooms, view_state
 from .base import RoomOperator, allow, manager
 
 
@@ -23,6 +24,7 @@ def take_picture(scene: Any, picture: ReferencePicture, anew: bool) -> None:
     Raises:
         RoomError: the scene holds a room of another picture and `anew` is not set.
     """
+    own_room.prepare(scene)
     if _other_room(scene, picture):
         if not anew:
             raise RoomError(
@@ -31,6 +33,9 @@ def take_picture(scene: Any, picture: ReferencePicture, anew: bool) -> None:
             )
         rooms.put_aside(scene)
     reference.keep_picture(scene, picture)
+    fitted_view.follow(scene)
+    for image in [i for i in bpy.data.images if i.get(IMAGE_MARK) and i.users == 0 and i.library is None]:
+        bpy.data.images.remove(image)  # only the camera's background had still used it
     view_state.refresh(scene)
     driver.note_outcome(scene, picture.notes[0] if picture.notes else "")
 
@@ -147,6 +152,7 @@ class CODE_AS_ROOM_OT_new_room(RoomOperator):
     def perform(self, context: bpy.types.Context) -> None:
         """Put the room aside."""
         name = rooms.put_aside(context.scene)
+        fitted_view.follow(context.scene)  # the picture stays
         view_state.refresh(context.scene)
         driver.note_outcome(context.scene, f"The earlier room's memory is kept in the text {name!r}" if name else "")
 

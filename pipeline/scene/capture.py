@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import io
+import logging
 import os
 import tempfile
 from dataclasses import dataclass
@@ -20,11 +21,21 @@ from .labels import draw_labels, object_labels
 from .studio import cycles, studio, visible_objects
 from .tags import find_room_collection
 from .viewpoint import corner_camera
+from .viewport import draw_in_view, open_view
+
+log = logging.getLogger(__name__)
+_QUICK = 3
+"""Compression of pictures that the window waits for."""
 
 
 @dataclass(frozen=True)
 class Picture:
-    """PNG bytes, and what drew them: "workbench" or "cycles" (the fallback without a graphics driver)."""
+    """PNG bytes, and what drew them.
+
+    Attributes:
+        method: "viewport" (Workbench in an open 3D view), "workbench" (a render, where there is none) or "cycles" (the
+            fallback without a graphics driver).
+    """
 
     png: bytes
     method: str
@@ -43,20 +54,21 @@ def capture(
     """
     room = _room(scene)
     with studio(visible_objects(room), camera, long_side, fine) as stage:
-        picture = _draw(stage)
+        drawn, method = _draw(stage, camera, fine)
     if not labels:
-        return picture
-    image = Image.open(io.BytesIO(picture.png)).convert("RGB")
+        return _picture(drawn, method)
+    image = drawn if isinstance(drawn, Image.Image) else Image.open(io.BytesIO(drawn)).convert("RGB")
     draw_labels(image, object_labels(room, camera))
-    return Picture(_png(image), picture.method)
+    return _picture(image, method)
 
 
 def eye_view(scene: Any, long_side: int = 1280) -> Picture:
     """A raised view into the room from the corner that hides least, near walls cut down. Raises SceneError."""
     room = _room(scene)
     objects = visible_objects(room)
-    with studio(objects, corner_camera(objects), long_side, fine=True) as stage:
-        return _draw(stage)
+    camera = corner_camera(objects)
+    with studio(objects, camera, long_side, fine=True) as stage:
+        return _picture(*_draw(stage, camera, fine=True))
 
 
 def _room(scene: Any) -> Any:
@@ -66,18 +78,24 @@ def _room(scene: Any) -> Any:
     return room
 
 
-def _draw(stage: Any) -> Picture:
-    """Render with Workbench; where there is no graphics driver, with Cycles on the processor."""
+def _draw(stage: Any, camera: CameraModel, fine: bool) -> tuple[Image.Image | bytes, str]:
+    """Draw in an open 3D view; without one, render with Workbench; without a graphics driver, with Cycles."""
+    view = open_view()
+    if view is not None:
+        try:
+            return draw_in_view(view, stage, camera, fine), "viewport"
+        except (RuntimeError, SystemError, ValueError, TypeError) as error:
+            log.warning("The 3D view could not draw the room, so it is rendered: %s", error)
     problem = "there is no graphics driver"
     if can_draw():
         try:
             ensure_gpu()
-            return Picture(_rendered(stage), "workbench")
+            return _rendered(stage), "workbench"
         except (RuntimeError, OSError, SystemError) as error:
             problem = str(error).strip() or type(error).__name__
     try:
         with cycles(stage):
-            return Picture(_rendered(stage), "cycles")
+            return _rendered(stage), "cycles"
     except (RuntimeError, OSError, TypeError, AttributeError) as error:
         raise SceneError(
             f"Blender could not draw the room: Workbench: {problem}; Cycles: {str(error).strip()}.",
@@ -99,7 +117,13 @@ def _rendered(stage: Any) -> bytes:
     return data
 
 
-def _png(image: Image.Image) -> bytes:
+def _picture(drawn: Image.Image | bytes, method: str) -> Picture:
+    """What was drawn as PNG. Nobody waits for a render to be made small, but Blender's window for its own drawing."""
+    if isinstance(drawn, bytes):
+        return Picture(drawn, method)
     buffer = io.BytesIO()
-    image.save(buffer, "PNG")
-    return buffer.getvalue()
+    if method == "viewport":
+        drawn.save(buffer, "PNG", compress_level=_QUICK)
+    else:
+        drawn.save(buffer, "PNG")
+    return Picture(buffer.getvalue(), method)

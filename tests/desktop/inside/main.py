@@ -16,6 +16,8 @@ sys.path.insert(0, str(Path(__file__).parent))
 import basics
 import edits
 import lifetime
+import looking
+import pointing
 from window import SHOTS, results
 
 STEPS = (
@@ -23,8 +25,11 @@ STEPS = (
     basics.load,
     basics.run_all,
     edits.undo_and_redo,
+    pointing.correct_in_the_picture,
     basics.stop,
     edits.move_and_resume,
+    looking.capture_in_the_view,
+    looking.look_through,
     lifetime.results_and_reload,
     lifetime.resume_after_reload,
     lifetime.disable,
