@@ -8,15 +8,13 @@ the method in `pipeline/` can be imported and tested in plain Python.
 
 def register() -> None:
     """Register every class, property, handler and command of the add-on with Blender."""
-    from . import operators, panels
+    from .operators import starting
 
-    operators.register()
-    panels.register()
+    starting.register()
 
 
 def unregister() -> None:
     """Undo `register`, in the reverse order."""
-    from . import operators, panels
+    from .operators import starting
 
-    panels.unregister()
-    operators.unregister()
+    starting.unregister()

@@ -16,17 +16,20 @@ from typing import Any
 import bpy
 
 from ..pipeline.errors import Cancelled, RoomError
-from ..pipeline.memory import load_memory
 from ..pipeline.run import Run, StageReport
+from ..pipeline.run_corrections import bring_up_to_date
 from ..pipeline.stages.base import Stage
-from . import clients, properties, reference, view_state
-from .job import Job, Progress
-from .scene_backend import ResolvedScene
+from . import clients, journals, late, own_room, properties, reference, room_memory, view_state
+from .job import Job
+from .meanwhile import NotApplied, in_hand
+from .progress import Durations, Progress
+from .scene_backend import ResolvedScene, scene_by_uid
 
 log = logging.getLogger(__name__)
 BUDGET = 0.03
 """Seconds of a tick that are spent on the job."""
 INTERVAL = 0.03
+TAB = "Room"
 _PATIENCE = 0.2
 
 
@@ -60,9 +63,11 @@ def outcome_of(scene: Any) -> Outcome | None:
     return _outcomes.get(scene.session_uid)
 
 
-def note_outcome(scene: Any, text: str, problem: view_state.Problem | None = None) -> None:
+def note_outcome(
+    scene: Any, text: str, problem: view_state.Problem | None = None, notices: tuple[str, ...] = ()
+) -> None:
     """Show a sentence where the result of a job is shown."""
-    _outcomes[scene.session_uid] = Outcome(text, problem)
+    _outcomes[scene.session_uid] = Outcome(text, problem, notices)
     redraw()
 
 
@@ -83,17 +88,33 @@ def make_run(scene: Any) -> tuple[Run, ResolvedScene]:
     Raises:
         RoomError: there is no picture, memory cannot be read, or the model's settings are not complete.
     """
-    picture = reference.kept_picture(scene)
+    notices = own_room.prepare(scene)
+    picture = room_memory.picture_of(scene)
     if picture is None:
-        raise RoomError("There is no picture yet.", "Load a picture of a room first.")
+        raise reference.missing(scene)
     backend = ResolvedScene(scene)
-    memory = load_memory(backend.load_memory())
+    backend.notices += notices
+    memory = room_memory.copy_of(room_memory.memory_of(scene))
     memory.settings = properties.memory_settings(scene.code_as_room, memory.settings)
-    return Run(picture, memory, clients.current_client(), backend), backend
+    journal = journals.journal_of(picture.sha256)
+    return Run(
+        picture, memory, clients.room_client(picture.sha256, memory.cost()[2]), backend, journal=journal
+    ), backend
 
 
-def start(scene: Any, stages: Sequence[Stage], again: bool = False, fresh: bool = False) -> Job:
+def start(
+    scene: Any,
+    stages: Sequence[Stage],
+    again: bool = False,
+    fresh: bool = False,
+    only: frozenset[str] | None = None,
+) -> Job:
     """Begin a job; `run_blocking` or the window's timer takes it to its end.
+
+    Args:
+        again: run the stages even where they are done.
+        fresh: ask again even where memory holds an answer.
+        only: ids of the objects that are to be done anew, None for all.
 
     Raises:
         RoomError: another job is on its way, or as `make_run`.
@@ -102,16 +123,19 @@ def start(scene: Any, stages: Sequence[Stage], again: bool = False, fresh: bool 
     if _job is not None:
         raise RoomError("Another run is going on.", "Wait for it, or stop it.")
     run, backend = make_run(scene)
+    bring_up_to_date(run)  # a known size may have been changed while another run was going on
     uid = scene.session_uid
 
     def stage_done(title: str) -> None:
         view_state.forget_failure(uid, job.progress.stage)
+        _follow_camera(uid)
         _push_undo(f"Room: {title}")
         _refresh(uid)
 
     for stage in stages:
         view_state.forget_failure(uid, stage.id)
-    job = _job = Job(run, backend, stages, again, fresh, stage_done)
+    durations = Durations(clients.user_folder())
+    job = _job = Job(run, backend, stages, again, fresh, stage_done, only, durations)
     _outcomes.pop(uid, None)
     return job
 
@@ -153,6 +177,7 @@ def cancel_for_load() -> None:
     _job = None
     _outcomes.clear()
     _reports.clear()
+    late.forget_all()
     if bpy.app.timers.is_registered(_tick):
         bpy.app.timers.unregister(_tick)
 
@@ -167,11 +192,19 @@ def _tick() -> float | None:
             _redraw_on_change(job.progress)
             return INTERVAL
         _finish(job)
-    except Exception:
+    except Exception as error:
         log.exception("The run ended unexpectedly")
-        cancel_for_load()
+        job.drop()
+        _give_up(job, error)
     redraw()
     return None
+
+
+def _give_up(job: Job, error: Exception) -> None:
+    """The run cannot even be ended as it should be; Blender and the panel go on."""
+    global _job
+    _job = None
+    _outcomes[job.scene_uid] = Outcome("The run failed", view_state.Problem.of(error))
 
 
 def _finish(job: Job) -> Outcome:
@@ -186,20 +219,43 @@ def _finish(job: Job) -> Outcome:
         outcome = Outcome(f"Done: {done}" if job.stages_done else "Nothing to do: every stage is done")
     elif isinstance(job.error, Cancelled):
         outcome = Outcome("Stopped. What was answered is kept")
+    elif isinstance(job.error, NotApplied):
+        outcome = Outcome("", view_state.Problem.of(job.error))
     else:
         view_state.note_failure(uid, progress.stage, job.error)
         outcome = Outcome(f"{progress.title or 'The run'} failed", view_state.Problem.of(job.error))
     outcome = replace(outcome, notices=tuple(job.backend.notices))
     _outcomes[uid] = outcome
     _reports.setdefault(uid, []).extend(job.run.reports)
+    if job.wrote and not in_hand():
+        # Else undoing what the artist does next would take what was answered along.
+        _push_undo("Room: Answers")
+    if scene_by_uid(uid) is None and bpy.context.scene is not None:
+        _outcomes[bpy.context.scene.session_uid] = outcome  # where it can be seen
+    late.look_after(job)
     _refresh(uid)
     return outcome
+
+
+def keep_answers() -> None:
+    """Write into the file what was answered so far, as before it is saved. Never raises."""
+    if _job is not None:
+        _job.keep_answers()
 
 
 def _refresh(uid: int) -> None:
     scene = next((s for s in bpy.data.scenes if s.session_uid == uid), None)
     if scene is not None:
         view_state.refresh(scene)
+
+
+def _follow_camera(uid: int) -> None:
+    """The camera that the artist looks through stands where the stage fitted it."""
+    from . import fitted_view
+
+    scene = next((s for s in bpy.data.scenes if s.session_uid == uid), None)
+    if scene is not None:
+        fitted_view.follow(scene)
 
 
 def _push_undo(message: str) -> None:
@@ -209,20 +265,23 @@ def _push_undo(message: str) -> None:
 
 
 def _redraw_on_change(progress: Progress) -> None:
-    """Redraw only when the panel would look different: once a second for the clock, else on news."""
+    """Redraw only when the panel would look different: at once on news, once a second for the clock and small talk."""
     global _shown
     seconds = int(time.monotonic() - progress.began)
-    shown = (progress.stage, progress.what, progress.step, progress.note, progress.stopping, seconds)
-    if shown != _shown:
-        _shown = shown
+    calls = progress.calls_open, progress.calls_done
+    news = (progress.stage, progress.what, progress.step, progress.stopping, calls, seconds)
+    if news != _shown:
+        _shown = news
         redraw()
 
 
 def redraw() -> None:
-    """Redraw the sidebars of all 3D views in all windows."""
-    for window in bpy.context.window_manager.windows if bpy.context.window_manager else ():
+    """Redraw the sidebars of all 3D views in all windows that show our tab, and the status bars while a run goes on."""
+    manager: Any = bpy.context.window_manager
+    for window in manager.windows if manager is not None else ():
         for area in window.screen.areas:
-            if area.type == "VIEW_3D":
-                for region in area.regions:
-                    if region.type == "UI":
-                        region.tag_redraw()
+            if area.type != "VIEW_3D" or not area.spaces.active.show_region_ui:
+                continue
+            for region in area.regions:
+                if region.type == "UI" and getattr(region, "active_panel_category", TAB) in (TAB, "UNSUPPORTED"):
+                    region.tag_redraw()

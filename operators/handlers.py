@@ -8,15 +8,23 @@ from typing import Any
 import bpy
 from bpy.app.handlers import persistent
 
-from . import driver, rooms, view_state
+from . import driver, fitted_view, journals, own_room, room_memory, rooms, view_state
 
 
 @persistent  # type: ignore[untyped-decorator]
 def _before_load(*_: Any) -> None:
     """A run belongs to the file that is open."""
     driver.cancel_for_load()
+    room_memory.forget_all()
     rooms.forget_all()
     view_state.forget_all()
+    fitted_view.forget_views()
+
+
+@persistent  # type: ignore[untyped-decorator]
+def _before_save(*_: Any) -> None:
+    """What was answered so far is in the file that is saved."""
+    driver.keep_answers()
 
 
 @persistent  # type: ignore[untyped-decorator]
@@ -26,7 +34,9 @@ def _after_change(*_: Any) -> None:
 
 
 def _first_look() -> None:
-    """Run once after the add-on was enabled, when Blender allows access to the open file."""
+    """Run once after the add-on was enabled, when Blender allows access to the open file, and when a scene is new."""
+    if not driver.is_running():
+        own_room.look_after_copies()
     view_state.refresh_all()
     driver.redraw()
 
@@ -35,6 +45,7 @@ def _lists() -> tuple[tuple[Any, Any], ...]:
     handlers = bpy.app.handlers
     return (
         (handlers.load_pre, _before_load),
+        (handlers.save_pre, _before_save),
         (handlers.load_post, _after_change),
         (handlers.undo_post, _after_change),
         (handlers.redo_post, _after_change),
@@ -64,3 +75,4 @@ def unregister() -> None:
         bpy.app.timers.unregister(_first_look)
     view_state.forget_all()
     rooms.forget_all()
+    journals.forget_all()

@@ -3,64 +3,44 @@
 
 Rules:
 
-- A worker thread does everything that is pure data: it starts the stage, asks the model, and lets the stage compute
-  between its wishes. It never touches bpy.
-- The main thread performs the wishes that need Blender (build, render, tell) and writes memory.
+- A worker thread does everything that is pure data: it starts the stage, asks the model, lets the stage compute between
+  its wishes, and works builds out. It never touches bpy.
+- The main thread performs what needs Blender, builds in slices (`building.py`), and writes memory.
 - Worker and main thread take turns with a session; they meet in one queue.
-- A job that was dropped (another file was loaded) never touches Blender again, whatever its worker still answers.
+- Before a result is applied it is checked that what it was made from still holds. What does not fit any more is kept as
+  answers, told, and never applied. What the artist does meanwhile is kept too (`meanwhile.py`).
+- A job that was dropped (another file was loaded) never touches Blender again, whatever its worker still answers. One
+  that was stopped is over within a second; what its worker still answers is taken by `late_answers`.
 """
 
 from __future__ import annotations
 
 import logging
-import queue
-import threading
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
-import bpy
-
+from ..pipeline.artifacts.layout import LayoutEdit
 from ..pipeline.ask import AskEvent
 from ..pipeline.errors import Cancelled, RoomError
 from ..pipeline.memory import dump_memory
+from ..pipeline.models.base import name_of
 from ..pipeline.run import Run, StageSession
+from ..pipeline.scene.plan import plan_build, warm_up
 from ..pipeline.stages.base import Stage
-from ..pipeline.stages.wishes import Ask
-from . import clients, reference
-from .scene_backend import ResolvedScene, scene_by_uid
+from ..pipeline.stages.wishes import Ask, Build, Render, Tell
+from . import clients
+from .building import Building
+from .meanwhile import Meanwhile, in_hand, outdated
+from .progress import Durations, Progress
+from .scene_backend import ResolvedScene
+from .worker import Failed, Planned, Ready, Result, Worker
+
+__all__ = ["Job", "Progress"]
 
 log = logging.getLogger(__name__)
-
-
-@dataclass(frozen=True)
-class Failed:
-    """The worker's message that something was raised."""
-
-    error: BaseException
-
-
-@dataclass
-class Progress:
-    """What the panel shows while the job runs; plain values."""
-
-    stage: str = ""
-    title: str = ""
-    what: str = ""
-    step: int = 0
-    steps: int = 0
-    note: str = ""
-    began: float = 0.0
-    number: int = 0
-    total: int = 1
-    stopping: bool = False
-
-    @property
-    def fraction(self) -> float:
-        """How much of the job is done, 0..1, going by stages and the steps that they tell."""
-        inside = max(0, self.step - 1) / self.steps if self.steps else 0.0
-        return min(1.0, (max(0, self.number - 1) + inside) / max(1, self.total))
+PATIENCE = 0.3
+"""Seconds that a stopped job waits for its worker, before it leaves the worker behind."""
 
 
 class Job:
@@ -72,6 +52,12 @@ class Job:
         again: run the stages even where they are done.
         fresh: ask again even where memory holds an answer.
         on_stage_done: called on the main thread after each stage, with its title.
+        only: ids of the objects that are to be done anew, None for all.
+
+    Attributes:
+        phase: what the job is waiting for or doing, in a few words.
+        wrote: whether something was written into the file since the last stage was done.
+        must_put_back: whether the room that stood before still has to be put back.
     """
 
     def __init__(
@@ -82,28 +68,42 @@ class Job:
         again: bool = False,
         fresh: bool = False,
         on_stage_done: Callable[[str], None] = lambda title: None,
+        only: frozenset[str] | None = None,
+        durations: Durations | None = None,
     ) -> None:
         self.run, self.backend, self.scene_uid = run, backend, backend.uid
-        self._todo, self._again, self._fresh = list(stages), again, fresh
+        self._todo, self._again, self._fresh, self._only = list(stages), again, fresh, only
         self._on_stage_done = on_stage_done
-        self._inbox: queue.SimpleQueue[AskEvent | StageSession | Failed] = queue.SimpleQueue()
+        self._durations = durations or Durations(None)
+        self._worker = Worker()
         self._session: StageSession | None = None
-        self._busy = self._dropped = False
-        self.over = False
+        self._building: tuple[Building, Planned] | None = None
+        self._meanwhile = Meanwhile(run, backend)
+        self._built = ""
+        self._applied = False
+        self._stopped_at = float("inf")
+        self.over = self.must_put_back = False
         self.error: BaseException | None = None
         self.stages_done = 0
+        self.phase = "starting"
         self.progress = Progress(began=time.monotonic(), total=len(self._todo))
+        self.progress.count(run.memory)
+        self.wrote = False
         run.progress = self._tell
         run.cancel.clear()
+        self._worker.hand_over(_warm)
+
+    # ---- from outside ----
 
     def stop(self) -> None:
         """Ask the job to end; what was answered is kept."""
         self.progress.stopping = True
+        self._stopped_at = min(self._stopped_at, time.monotonic())
         self.run.cancel.set()
 
     def drop(self) -> None:
         """End the job at once without touching Blender any more, as when another file is loaded."""
-        self._dropped = self.over = True
+        self.over = True
         self.run.cancel.set()
 
     def tick(self, budget: float) -> bool:
@@ -111,121 +111,239 @@ class Job:
         deadline = time.monotonic() + budget
         try:
             clients.watch_online_access(self.run.client)
-            for _ in range(self._inbox.qsize() + 1):
-                if not self._busy and not self.over:
-                    self._begin_next()
-                if self.over or time.monotonic() >= deadline:
+            if self._worker.busy and time.monotonic() > self._stopped_at + PATIENCE:
+                self._end(Cancelled())
+            while not self.over:
+                if self._building is not None:
+                    if not self._go_on_building(deadline):
+                        break
+                elif not self._take_message():
                     break
-                try:
-                    message = self._inbox.get_nowait()
-                except queue.Empty:
+                if time.monotonic() >= deadline:
                     break
-                self._handle(message)
+            if not self.over:
+                self._flush()
         except Exception as error:
             self._end(error)
         return not self.over
 
+    def keep_answers(self) -> None:
+        """Write into the file what was answered so far; never raises."""
+        try:
+            if not self.over:
+                self._flush()
+        except RoomError as error:
+            log.info("Answers could not be kept in the file: %s", error)
+
     def wait(self, seconds: float) -> None:
         """Block until the worker has something, at most this long (for runs without a window)."""
-        try:
-            self._inbox.put(self._inbox.get(timeout=seconds))
-        except queue.Empty:
-            return
+        if self._building is None:
+            self._worker.wait(seconds)
+
+    @property
+    def leaves_worker(self) -> bool:
+        """Whether the worker of a job that is over is still at it."""
+        return self._worker.is_alive
+
+    def put_back(self) -> bool:
+        """Put the room back that stood before a stage that did not end; False when that has to wait. Main thread only.
+
+        Raises:
+            RoomError: the scene is gone.
+        """
+        if not self.must_put_back:
+            return True
+        if self._must_wait():
+            return False
+        self.must_put_back = False
+        if not self._built or self.backend.program_text() == self._built:
+            self._meanwhile.put_back()
+            self.backend.save_memory(dump_memory(self.run.memory))
+        return True
+
+    # ---- the worker's side: pure data only ----
+
+    def _go_on(self, move: Callable[[], StageSession]) -> None:
+        """Let the worker move the session on, answer its questions, and work out what it wants to build."""
+        session = self._session
+
+        def work() -> Result:
+            nonlocal session
+            try:
+                session = self._session = move()
+                while isinstance(session.wish, Ask):
+                    if self.run.cancel.is_set():
+                        raise Cancelled
+                    self.phase = "waiting for the model"
+                    replies = session.ask(session.wish, self._worker.tell)
+                    self.phase = "computing"
+                    self.backend.save_memory(dump_memory(self.run.memory))
+                    session.send(replies)
+                return self._plan(session, []) if isinstance(session.wish, Build) else session
+            except BaseException:
+                if session is not None and not session.finished:
+                    session.close()
+                raise
+
+        self.phase = "computing"
+        self._worker.hand_over(work)
+
+    def _plan(self, session: StageSession, edits: list[LayoutEdit]) -> Planned:
+        """Work the session's build out, with what the artist edited."""
+        assert isinstance(session.wish, Build)
+        text, findings = self._meanwhile.patched(session.wish.text, edits)
+        return Planned(plan_build(text), edits, findings)
+
+    # ---- the main thread's side ----
+
+    def _take_message(self) -> bool:
+        """Handle the next message of the worker; False when there is none, or it has to wait."""
+        message = self._worker.take()
+        if message is None:
+            return False
+        if isinstance(message, AskEvent):
+            self.progress.take(message)
+            if message.kind in ("answered", "recalled"):
+                self.progress.count(self.run.memory)
+            return True
+        if _touches(message) and not self.run.cancel.is_set() and self._must_wait():
+            self._worker.hold(message)
+            return False
+        self._handle(message)
+        return True
+
+    def _handle(self, message: Result) -> None:
+        if isinstance(message, Failed):
+            return self._end(message.error)
+        self._meanwhile.check_scene()
+        if message == Ready("applied"):
+            return self._stage_is_done()
+        if self.run.cancel.is_set():
+            return self._end(Cancelled())
+        self._meanwhile.agree()
+        if isinstance(message, Ready):
+            return self._begin_next()
+        self._meanwhile.check_inputs(self._session)
+        if isinstance(message, Planned):
+            self.phase = "building"
+            self._building = (Building(self.backend, message.plan), message)
+        elif message.finished:
+            self._apply(message)
+        else:
+            self._perform(message)
 
     def _begin_next(self) -> None:
         """Start the next stage that has to run, or end."""
-        if self.run.cancel.is_set():
-            return self._end(Cancelled())
-        self._check_inputs()
+        self._session, self._applied = None, False
         while self._todo and not self._again and self.run.status(self._todo[0]) == "done":
             self._todo.pop(0)
             self.progress.number += 1
         if not self._todo:
             return self._end(None)
+        self._meanwhile.check_inputs(None)
         stage = self._todo.pop(0)
-        progress = self.progress
-        progress.number += 1
-        progress.stage, progress.title = stage.id, stage.title
-        progress.what, progress.step, progress.steps, progress.note = "Starting", 0, 0, ""
+        self._expect(stage)
         self.run.take_over_edits()
-        self.backend.flush()
-        self._hand_over(lambda: StageSession(self.run, stage, self._fresh))
+        self._meanwhile.begin_stage()
+        self._built = ""
+        self._go_on(lambda: StageSession(self.run, stage, self._fresh, self._only, waits=True))
 
-    def _check_inputs(self) -> None:
-        """The scene and its picture must still be those that the run began with."""
-        scene = scene_by_uid(self.scene_uid)
-        if scene is None or reference.picture_mark(scene) != self.run.picture.sha256:
-            raise RoomError(
-                "The scene or its picture was changed while a stage was running.",
-                "What was answered is kept; run the stage again.",
-            )
-
-    def _hand_over(self, move: Callable[[], StageSession]) -> None:
-        """Let the worker go on: `move` first, then every question that follows."""
-        self._busy = True
-        threading.Thread(target=self._work, args=(move,), name="code-as-room", daemon=True).start()
-
-    def _work(self, move: Callable[[], StageSession]) -> None:
-        """The worker's side: pure data only."""
-        session = self._session
-        try:
-            session = self._session = move()
-            while isinstance(session.wish, Ask):
-                if self.run.cancel.is_set():
-                    raise Cancelled
-                replies = session.ask(session.wish, self._inbox.put)
-                self.backend.save_memory(dump_memory(self.run.memory))
-                session.send(replies)
-        except BaseException as error:
-            if session is not None and not session.finished:
-                session.close()
-            self._inbox.put(Failed(error))
-        else:
-            self._inbox.put(session)
-
-    def _handle(self, message: AskEvent | StageSession | Failed) -> None:
-        if isinstance(message, AskEvent):
-            self.progress.note = message.text
-            return
-        self._busy = False
-        self.backend.flush()
-        if isinstance(message, Failed):
-            self._end(message.error)
-        elif message.finished:
-            self._session = None
-            self.stages_done += 1
-            self._on_stage_done(message.stage.title)
-        elif self.run.cancel.is_set():
-            message.close()
-            self._end(Cancelled())
-        elif self._must_wait():
-            self._busy = True
-            self._inbox.put(message)
-        else:
-            self._perform(message)
+    def _expect(self, stage: Stage) -> None:
+        """Tell which stage begins, and how long it and those after it took before."""
+        progress, now = self.progress, time.monotonic()
+        progress.number += 1
+        progress.stage, progress.title, progress.stage_began = stage.id, stage.title, now
+        progress.what, progress.step, progress.steps, progress.note = "Starting", 0, 0, ""
+        names = {s.id: name_of(self.run.client, s.id) for s in (stage, *self._todo)}
+        progress.stage_expected = self._durations.expected(self.run.memory, stage.id, names[stage.id])
+        rest = self._durations.expected_all(self.run.memory, list(names), names)
+        progress.expected = None if rest is None else now - progress.began + rest
 
     def _must_wait(self) -> bool:
         """Whether the artist is in the middle of something that a build would break into, such as Edit mode."""
-        if bpy.app.background or bpy.context.mode in ("OBJECT", ""):
+        note = in_hand()
+        if note:
+            self.progress.note = self.phase = note
+        return bool(note)
+
+    def _go_on_building(self, deadline: float) -> bool:
+        """Do slices of the build until the deadline; False when it has to wait."""
+        assert self._building is not None
+        building, planned = self._building
+        if self.run.cancel.is_set():
+            building.drop()
+            self._building = None
+            self._end(Cancelled())
             return False
-        self.progress.note = "Waiting until you are back in Object mode"
-        return True
+        while building.step():
+            if time.monotonic() >= deadline:
+                return False
+        if self._must_wait():
+            return False
+        self._meanwhile.check_inputs(self._session)
+        session, self._building = self._session, None
+        assert session is not None
+        edits = self.backend.read_back()
+        if edits != planned.edits:
+            building.drop()
+            self._worker.hand_over(lambda: self._plan(session, edits))
+            self.phase = "computing"
+            return False
+        if edits:
+            self._meanwhile.take_over(edits, planned.findings)
+        building.commit()
+        self._built = planned.plan.text
+        if edits:
+            self.backend.save_memory(dump_memory(self.run.memory))
+        self._answer(session, None)
+        return False
 
     def _perform(self, session: StageSession) -> None:
         """Perform a wish that needs the main thread, and let the worker go on with its result."""
         assert session.wish is not None
-        self._check_inputs()
-        try:
-            result: Any = session.act(session.wish)
-        except BaseException:
-            session.close()
-            raise
+        if isinstance(session.wish, Render):
+            self.phase = "rendering"
+            if self._built and self.backend.program_text() != self._built:
+                self.backend.build(self._built)  # an undo took the layout away that the stage speaks of
+        self._answer(session, session.act(session.wish))
 
+    def _answer(self, session: StageSession, result: Any) -> None:
         def go_on() -> StageSession:
             session.send(result)
             return session
 
-        self._hand_over(go_on)
+        self._go_on(go_on)
+
+    def _apply(self, session: StageSession) -> None:
+        """The stage's result is still good: let the worker write it."""
+
+        def write() -> Result:
+            session.apply()
+            report = session.report()
+            if report.calls:
+                self._durations.note(report.stage, name_of(self.run.client, report.stage), report.seconds)
+            return Ready("applied")
+
+        self.phase = "finishing"
+        self._worker.hand_over(write)
+
+    def _stage_is_done(self) -> None:
+        if not self._flush():  # an undo in the last moment
+            raise outdated(self.progress.title)
+        self._applied, self.wrote = True, False
+        self.progress.count(self.run.memory)
+        self.stages_done += 1
+        self._on_stage_done(self.progress.title)
+        self._worker.hand_over(lambda: Ready("begin"))
+
+    def _flush(self) -> bool:
+        """Write the memory's text that waits; False when the file's memory was changed behind our back."""
+        if not self.backend.has_unsaved:
+            return True
+        if not self._meanwhile.flush(is_whole=not self._worker.busy):
+            return False
+        self.wrote = True
+        return True
 
     def _tell(self, what: str, step: int, steps: int) -> None:
         self.progress.what, self.progress.step, self.progress.steps = what, step, steps
@@ -236,13 +354,31 @@ class Job:
         if self.over:
             return
         self.over, self.error = True, error
-        if self._session is not None and not self._busy and not self._session.finished:
-            self._session.close()
+        session, busy = self._session, self._worker.busy
+        if session is not None and not busy and not session.finished:
+            session.close()
         if error is not None and not isinstance(error, RoomError):
             log.error("A stage failed unexpectedly", exc_info=error)
         try:
-            if error is not None and not self._must_wait():
-                self.run.put_back()
-            self.backend.flush()
+            if self._building is not None:
+                self._building[0].drop()
+            self._meanwhile.check_scene()
+            if not busy:
+                self._meanwhile.agree()
+            self.must_put_back = error is not None and session is not None and not self._applied
+            self.put_back()
+            self.backend.save_memory(dump_memory(self.run.memory))
+            self._flush()
         except RoomError as problem:
             self.error = self.error or problem
+
+
+def _touches(message: Result) -> bool:
+    """Whether what follows a message changes the scene, or makes an undo step."""
+    tells = isinstance(message, StageSession) and isinstance(message.wish, Tell)
+    return not tells and not isinstance(message, Failed)
+
+
+def _warm() -> Ready:
+    warm_up()
+    return Ready("begin")

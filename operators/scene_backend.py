@@ -9,7 +9,7 @@ running, so it only keeps the text; `flush` writes it on the main thread.
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -20,7 +20,11 @@ from ..pipeline.artifacts.camera import CameraModel
 from ..pipeline.artifacts.layout import LayoutEdit
 from ..pipeline.artifacts.scene import SceneDocument
 from ..pipeline.errors import SceneError
+from ..pipeline.report_rounds import text_key
 from ..pipeline.scene.backend import BlenderScene
+from ..pipeline.scene.plan import BuildPlan
+from ..pipeline.scene.targets import Target
+from . import round_pictures
 
 
 def scene_by_uid(uid: int) -> Any | None:
@@ -58,15 +62,48 @@ class ResolvedScene:
         with self._scene() as scene:
             scene.build(text)
 
+    def lacking(self, plan: BuildPlan) -> list[Target]:
+        """As `BlenderScene.lacking`."""
+        with self._scene() as scene:
+            return scene.lacking(plan)
+
+    def commit(self, plan: BuildPlan, made: dict[tuple[str, str], Any]) -> None:
+        """As `BlenderScene.commit`."""
+        with self._scene() as scene:
+            scene.commit(plan, made)
+
     def render(self, camera: CameraModel, long_side: int, labels: bool) -> bytes:
         """As `SceneBackend.render`."""
         with self._scene() as scene:
-            return scene.render(camera, long_side, labels)
+            png = scene.render(camera, long_side, labels)
+            if labels:  # a round of the layout loop, which the panel shows
+                round_pictures.keep(text_key(scene.program_text()), png)
+            return png
 
     def read_back(self) -> list[LayoutEdit]:
         """As `SceneBackend.read_back`."""
         with self._scene() as scene:
             return scene.read_back()
+
+    def text_edits(self) -> list[LayoutEdit] | None:
+        """As `HandScene.text_edits`."""
+        with self._scene() as scene:
+            return scene.text_edits()
+
+    def accept_text(self, on: bool = True, renamed: Mapping[str, str] | None = None) -> None:
+        """As `HandScene.accept_text`."""
+        with self._scene() as scene:
+            scene.accept_text(on, renamed)
+
+    def hold(self, ids: frozenset[str]) -> None:
+        """As `HandScene.hold`."""
+        with self._scene() as scene:
+            scene.hold(ids)
+
+    def forget(self, ids: set[str]) -> None:
+        """As `HandScene.forget`."""
+        with self._scene() as scene:
+            scene.forget(ids)
 
     def load_memory(self) -> str:
         """As `SceneBackend.load_memory`; what was saved last, even before it was flushed."""
@@ -75,6 +112,17 @@ class ResolvedScene:
                 return self._unsaved
         with self._scene() as scene:
             return scene.load_memory()
+
+    def memory_in_file(self) -> str:
+        """The memory's text as it stands in the file, whatever is waiting to be written."""
+        with self._scene() as scene:
+            return scene.load_memory()
+
+    @property
+    def has_unsaved(self) -> bool:
+        """Whether a text waits for `flush`; any thread."""
+        with self._lock:
+            return self._unsaved is not None
 
     def save_memory(self, text: str) -> None:
         """Keep the memory's text until `flush`; any thread."""

@@ -29,13 +29,15 @@ class _Start:
     """Where enabling stands.
 
     Attributes:
-        importer: the thread that imports; complete: everything is registered; missing: packages that are not there.
+        importer: the thread that imports; complete: everything is registered; missing: packages that are not there;
+        failed: registering ended in an error that is in the console.
     """
 
     def __init__(self) -> None:
         self.importer: threading.Thread | None = None
         self.complete = False
         self.missing: tuple[str, ...] = ()
+        self.failed = False
 
 
 _start = _Start()
@@ -64,12 +66,15 @@ class CODE_AS_ROOM_PT_starting(bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         """Say what goes on."""
         layout: Any = self.layout
+        troubled = bool(_start.missing) or _start.failed
         for number, line in enumerate(textwrap.wrap(sentence(), 34)):
-            layout.label(text=line, icon="NONE" if number or not _start.missing else "ERROR")
+            layout.label(text=line, icon="NONE" if number or not troubled else "ERROR")
 
 
 def sentence() -> str:
     """What the tab says before everything is registered."""
+    if _start.failed:
+        return "Code-as-Room could not start. The details are in Blender's console; please report them."
     if not _start.missing:
         return "Starting."
     names = " and ".join({"PIL": "Pillow"}.get(name, name) for name in _start.missing)
@@ -79,12 +84,17 @@ def sentence() -> str:
     )
 
 
+def in_background() -> bool:
+    """Whether Blender runs without a window."""
+    return bool(bpy.app.background)
+
+
 def register() -> None:
     """Enable the add-on."""
     global _start
     _start = _Start()
     bpy.utils.register_class(CODE_AS_ROOM_PT_starting)
-    if bpy.app.background:
+    if in_background():
         _complete(missing_packages())
         return
     _start.importer = threading.Thread(target=_import, args=(_start,), name="code-as-room-imports", daemon=True)
@@ -138,6 +148,7 @@ def _look() -> float | None:
     try:
         _complete(start.missing)
     except Exception:
+        start.failed = True
         log.exception("Code-as-Room could not be enabled")
     return None
 

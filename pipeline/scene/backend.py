@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import functools
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -12,19 +14,22 @@ from ..artifacts.camera import CameraModel
 from ..artifacts.layout import LayoutEdit
 from ..artifacts.scene import SceneDocument
 from ..errors import SceneError
-from ..program.assemble import assemble, room_part
-from ..program.evaluate import evaluate
-from ..program.lines import parse_layout
+from ..program.assemble import room_part
 from .adopt import adopt
 from .capture import capture, eye_view
 from .document import scene_document
+from .holding import forget_aside
+from .plan import BuildPlan, line_ids, plan_build
 from .readback import read_back
-from .realise import realise_record
+from .realise import lacking, realise_plan
 from .save import save_copy
-from .tags import ensure_collections, find_room_collection
-from .texts import MEMORY, PROGRAM, read_text, write_text
+from .tags import HELD, ID, ensure_collections, find_room_collection
+from .targets import Target
+from .texts import MEMORY, PROGRAM, is_hand_edited, read_text, write_text
+from .typed import accept_text, text_edits
 
 COLLECTION = "Code-as-Room"
+_room_part = functools.lru_cache(maxsize=4)(room_part)
 _QUICK = 1024  # pixels; larger pictures are for people and are drawn finer
 
 
@@ -41,11 +46,30 @@ class BlenderScene:
 
     def build(self, text: str) -> None:
         """As `SceneBackend.build`."""
-        record = evaluate(text)
+        self.commit(plan_build(text, meshes=False), {})
+
+    def lacking(self, plan: BuildPlan) -> list[Target]:
+        """What `realise.new_mesh` may make before `commit`, so that it has less to do; nothing is changed."""
+        return lacking(plan.room, self._room())
+
+    def commit(self, plan: BuildPlan, made: dict[tuple[str, str], Any]) -> None:
+        """Make the scene show a plan: objects and program text together.
+
+        Args:
+            made: meshes that were made beforehand, by their target's key; what is used is taken out.
+        """
         room = self._ensure_room()
         _leave_edit_mode(room)
-        self._tell(*realise_record(record, COLLECTION, self.scene))
-        self._tell(write_text(room, PROGRAM, assemble(text)))
+        try:
+            realise_plan(plan.room, COLLECTION, self.scene, made)
+        except Exception:
+            # Objects and text agree whatever happens: what stood before stands again.
+            former = self.program_text()
+            if former and former != plan.text:
+                realise_plan(plan_build(former, meshes=False).room, COLLECTION, self.scene, {})
+            raise
+        self._tell(*plan.room.notes)
+        self._tell(write_text(room, PROGRAM, plan.full_text))
 
     def render(self, camera: CameraModel, long_side: int, labels: bool) -> bytes:
         """As `SceneBackend.render`."""
@@ -62,12 +86,36 @@ class BlenderScene:
         text, room = self.program_text(), self._room()
         if room is None or not text:
             return []
-        layout = parse_layout(text)
-        lines = (layout.walls, layout.doors, layout.windows, layout.openings, layout.proxies, layout.lights)
-        taken = {line.id for group in (*lines, layout.cameras) for line in group}
-        reading = read_back(room, taken)
+        reading = read_back(room, set(line_ids(text)))
         adopt(reading)
+        self._tell(*(f"{finding.about}: {finding.message}" for finding in reading.findings))
         return reading.edits
+
+    def text_edits(self) -> list[LayoutEdit] | None:
+        """As `HandScene.text_edits`."""
+        room = self._room()
+        if room is None or not is_hand_edited(room, PROGRAM):
+            return None
+        return text_edits(room)
+
+    def accept_text(self, on: bool = True, renamed: Mapping[str, str] | None = None) -> None:
+        """As `HandScene.accept_text`."""
+        room = self._room()
+        if room is not None:
+            accept_text(room, on, renamed or {})
+
+    def hold(self, ids: frozenset[str]) -> None:
+        """As `HandScene.hold`."""
+        room = self._room()
+        for obj in room.all_objects if room is not None else ():
+            if obj.get(ID) in ids and HELD not in obj:
+                obj[HELD] = True
+
+    def forget(self, ids: set[str]) -> None:
+        """As `HandScene.forget`."""
+        room = self._room()
+        if room is not None and ids:
+            forget_aside(room, ids)
 
     def load_memory(self) -> str:
         """As `SceneBackend.load_memory`; a text that the artist broke comes as it is."""
@@ -80,7 +128,7 @@ class BlenderScene:
     def program_text(self) -> str:
         """As `SceneBackend.program_text`, with what the artist edited in it."""
         text = read_text(self._room(), PROGRAM)
-        return room_part(text) if text else ""
+        return _room_part(text) if text else ""
 
     def scene_document(self, image: str, camera: CameraModel) -> SceneDocument:
         """As `SceneBackend.scene_document`."""
@@ -100,7 +148,7 @@ class BlenderScene:
         return ensure_collections(self.scene, COLLECTION)["room"]
 
     def _drawn(self, png: bytes, method: str) -> bytes:
-        if method != "workbench":
+        if method == "cycles":
             self._tell(f"The picture was drawn with {method}, since Workbench found no graphics driver.")
         return png
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..program.prelude.shape import Shape
+from .arrays import MeshArrays
 from .materials import ensure_material
 from .tags import DIGEST, FINGERPRINT
 
@@ -29,65 +29,43 @@ def is_hand_made(mesh: Any) -> bool:
     return bool(mesh.get(FINGERPRINT) != mesh_fingerprint(mesh))
 
 
-def write_shapes(mesh: Any, shapes: list[Shape], family: str, digest: str) -> None:
-    """Replace the mesh's geometry and material slots by these shapes; the datablock stays the same."""
+def write_arrays(mesh: Any, arrays: MeshArrays, family: str, digest: str) -> None:
+    """Replace the mesh's geometry and material slots by these arrays; the datablock stays the same."""
     mesh.clear_geometry()
     mesh.materials.clear()
-    roles = list(dict.fromkeys(shape.material for shape in shapes if shape.faces))
-    for role in roles:
+    for role in arrays.roles:
         mesh.materials.append(ensure_material(family, role))
-    _write_geometry(mesh, shapes)
+    _write_geometry(mesh, arrays)
     if mesh.polygons:
-        slots = [roles.index(s.material) for s in shapes for _ in s.faces]
-        mesh.polygons.foreach_set("material_index", np.array(slots, dtype=np.int32))
-        mesh.polygons.foreach_set("use_smooth", np.array([s.smooth for s in shapes for _ in s.faces], dtype=bool))
-        _write_parts(mesh, shapes)
-        _write_uvs(mesh, shapes)
+        mesh.polygons.foreach_set("material_index", arrays.slots)
+        mesh.polygons.foreach_set("use_smooth", arrays.smooth)
+        _write_parts(mesh, arrays)
+        if arrays.uvs is not None:
+            layer = mesh.uv_layers.new(name="UVMap", do_init=False)
+            layer.uv.foreach_set("vector", arrays.uvs.ravel())
     mesh.update(calc_edges=True)
     mesh.validate()
     mesh[DIGEST] = digest
     mesh[FINGERPRINT] = mesh_fingerprint(mesh)
 
 
-def _write_geometry(mesh: Any, shapes: list[Shape]) -> None:
-    """Vertices, faces and loose edges of all shapes, one after the other."""
-    offsets = np.cumsum([0, *(len(s.vertices) for s in shapes)])
-    points = np.concatenate([s.vertices for s in shapes]).astype(np.float32) if shapes else np.zeros((0, 3), np.float32)
-    faces = [[v + int(start) for v in face] for s, start in zip(shapes, offsets, strict=False) for face in s.faces]
-    edges = [
-        [v + int(start) for v in edge]
-        for s, start in zip(shapes, offsets, strict=False)
-        for edge in s.extra.get("edges", ())
-    ]
-    if edges:
-        mesh.from_pydata(points.tolist(), edges, faces)
+def _write_geometry(mesh: Any, arrays: MeshArrays) -> None:
+    """Vertices, faces and loose edges."""
+    if len(arrays.edges):
+        faces = [face.tolist() for face in np.split(arrays.corners, arrays.starts[1:])] if len(arrays.starts) else []
+        mesh.from_pydata(arrays.points.tolist(), arrays.edges.tolist(), faces)
         return
-    mesh.vertices.add(len(points))
-    mesh.vertices.foreach_set("co", points.ravel())
-    lengths = [len(face) for face in faces]
-    mesh.loops.add(sum(lengths))
-    mesh.loops.foreach_set("vertex_index", np.array([v for face in faces for v in face], dtype=np.int32))
-    mesh.polygons.add(len(faces))
-    if faces:
-        mesh.polygons.foreach_set("loop_start", np.cumsum([0, *lengths[:-1]]).astype(np.int32))
+    mesh.vertices.add(len(arrays.points))
+    mesh.vertices.foreach_set("co", arrays.points.ravel())
+    mesh.loops.add(len(arrays.corners))
+    mesh.loops.foreach_set("vertex_index", arrays.corners)
+    mesh.polygons.add(len(arrays.starts))
+    if len(arrays.starts):
+        mesh.polygons.foreach_set("loop_start", arrays.starts)
 
 
-def _write_parts(mesh: Any, shapes: list[Shape]) -> None:
+def _write_parts(mesh: Any, arrays: MeshArrays) -> None:
     """Which named part each face belongs to: a face attribute "part" that counts the names in a custom property."""
-    names = list(dict.fromkeys(shape.part for shape in shapes))
     attribute = mesh.attributes.new("part", "INT", "FACE")
-    values = [names.index(s.part) for s in shapes for _ in s.faces]
-    attribute.data.foreach_set("value", np.array(values, dtype=np.int32))
-    mesh["code_as_room_parts"] = names
-
-
-def _write_uvs(mesh: Any, shapes: list[Shape]) -> None:
-    """A UV map in metres when any shape brings one; the others get zeros."""
-    if all(shape.uvs is None for shape in shapes):
-        return
-    rows = []
-    for shape in shapes:
-        corners = sum(len(face) for face in shape.faces)
-        rows.append(np.zeros((corners, 2)) if shape.uvs is None else np.asarray(shape.uvs).reshape(corners, 2))
-    layer = mesh.uv_layers.new(name="UVMap", do_init=False)
-    layer.uv.foreach_set("vector", np.concatenate(rows).astype(np.float32).ravel())
+    attribute.data.foreach_set("value", arrays.parts)
+    mesh["code_as_room_parts"] = list(arrays.part_names)

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, Protocol
 
 from ..artifacts.common import Placement, Salience
 from ..artifacts.layout import LayoutEdit
@@ -16,10 +16,22 @@ _NEAR = 0.06  # metres between a base and what it stands on
 _SMALL = 0.15  # square metres of footprint below which a new object decorates
 
 
-def guess_placement(box: Box, parent: str | None, boxes: dict[str, Box | None], height: float) -> Placement:
+class Measured(Protocol):
+    """Boxes of the room's objects by id, measured when they are asked for."""
+
+    def __getitem__(self, name: str) -> Box | None: ...
+
+    def __setitem__(self, name: str, box: Box | None) -> None: ...
+
+    def everything(self) -> dict[str, Box | None]:
+        """All of them."""
+        ...
+
+
+def guess_placement(box: Box, parent: str | None, boxes: Measured, height: float) -> Placement:
     """On the floor, on a surface, under the ceiling or on a wall."""
     base, top = box.centre[2] - box.size[2] / 2, box.centre[2] + box.size[2] / 2
-    if parent is not None and boxes.get(parent) is not None:
+    if parent is not None and boxes[parent] is not None:
         return "surface"
     if base < _NEAR:
         return "floor"
@@ -28,11 +40,13 @@ def guess_placement(box: Box, parent: str | None, boxes: dict[str, Box | None], 
     return "wall"
 
 
-def supporting(box: Box, boxes: dict[str, Box | None]) -> str | None:
+def supporting(box: Box, boxes: Measured) -> str | None:
     """Id of the object whose top the box stands on, with its centre above it; None when there is none."""
     base = box.centre[2] - box.size[2] / 2
-    for name, other in boxes.items():
-        if other is None or other is box or base < _NEAR:
+    if base < _NEAR:
+        return None
+    for name, other in boxes.everything().items():
+        if other is None or other is box:
             continue
         angle = math.radians(other.yaw)
         dx, dy = box.centre[0] - other.centre[0], box.centre[1] - other.centre[1]
@@ -43,9 +57,7 @@ def supporting(box: Box, boxes: dict[str, Box | None]) -> str | None:
     return None
 
 
-def new_proxy_edit(
-    obj: Any, name: str, box: Box, parent: str | None, boxes: dict[str, Box | None], height: float
-) -> LayoutEdit:
+def new_proxy_edit(obj: Any, name: str, box: Box, parent: str | None, boxes: Measured, height: float) -> LayoutEdit:
     """The edit that adds an object of the artist to the program; a copy takes over what its original says."""
     is_copy = ID in obj and FIELD + "category" in obj
     if parent is None and not is_copy:

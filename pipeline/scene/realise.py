@@ -20,13 +20,26 @@ import bpy
 import numpy as np
 
 from ..program.prelude.record import Record
+from .holding import (
+    away,
+    bring_back,
+    free_children,
+    held_matrix,
+    is_artists,
+    is_pending,
+    kept_parent,
+    remember,
+    remember_record,
+    set_aside,
+)
 from .lenses import write_camera, write_light
-from .measure import fit_matrix
-from .meshes import is_hand_made, write_shapes
+from .measure import EXACT, fit_matrix
+from .meshes import is_hand_made, write_arrays
 from .tags import (
-    BUILT_IDS,
+    AWAY,
     DIGEST,
     FIELD,
+    HELD,
     ID,
     KIND,
     LINE,
@@ -37,9 +50,9 @@ from .tags import (
     tagged_objects,
     world_matrix,
 )
-from .targets import Target, parents_first, record_targets, shapes_digest, target_digest
+from .targets import Plan, Target, plan_record
 
-_MATRIX_TOLERANCE = 1e-5  # metres and radians: above float32 noise, far below what an artist sees
+_CAMERA_TOLERANCE = 1e-5  # metres and radians: above float32 noise; a camera's line says more than 0.1 mm
 
 
 def realise_record(record: Record, collection_name: str = "Code-as-Room", scene: Any = None) -> list[str]:
@@ -51,59 +64,111 @@ def realise_record(record: Record, collection_name: str = "Code-as-Room", scene:
     Returns:
         One plain sentence for each number of the shell that had to be clamped.
     """
-    scene = scene or bpy.context.scene
+    plan = plan_record(record)
+    realise_plan(plan, collection_name, scene or bpy.context.scene, {})
+    return plan.notes
+
+
+def realise_plan(plan: Plan, collection_name: str, scene: Any, made: dict[tuple[str, str], Any]) -> None:
+    """Make or update the room in the scene, as `realise_record` does.
+
+    Args:
+        made: meshes that `new_mesh` made beforehand, by the key of their target. They are taken out as they are used.
+    """
     collections = ensure_collections(scene, collection_name)
-    targets, notes = record_targets(record)
-    existing = tagged_objects(collections["room"])
-    wanted = {target.key for target in targets}
+    room = collections["room"]
+    existing = tagged_objects(room)
+    wanted = {target.key for target in plan.targets}
     _restore_refused_names(existing, wanted)
-    for key, objects in existing.items():
-        obj = objects[0]
-        if key not in wanted and LINE in obj and obj.get(NAME) == obj.name:  # copies and renamed ones are the artist's
+    # Copies and renamed ones are the artist's.
+    gone = [o[0] for k, o in existing.items() if k not in wanted and LINE in o[0] and o[0].get(NAME) == o[0].name]
+    for obj in filter(is_artists, gone):
+        obj[AWAY] = True
+    for obj in gone:
+        if AWAY in obj:
+            set_aside(room, obj)
+        else:
             _remove(obj)
+    aside = away(room)
     done: dict[str, Any] = {}
-    for target in parents_first(targets):
-        obj = existing.get(target.key, [None])[0]
-        obj = _realise(target, obj, done.get(target.parent or ""), collections[target.role])
+    for target in plan.targets:
+        obj, parent = existing.get(target.key, [None])[0], done.get(target.parent or "")
+        if obj is None and target.key in aside:
+            obj = bring_back(aside[target.key], parent, room, collections[target.role])
+        obj = _realise(target, plan, obj, parent, collections[target.role], made)
         if not target.key[1]:
             done[target.key[0]] = obj
-    collections["room"][BUILT_IDS] = [line["id"] for line in record.proxies]
+    remember_record(room, plan.record, set(done))
     if scene.camera is None:
-        scene.camera = next((done[line["id"]] for line in record.cameras if line["id"] in done), None)
+        scene.camera = next((done[line["id"]] for line in plan.record.cameras if line["id"] in done), None)
     for layer in scene.view_layers:
         layer.update()
-    return notes
 
 
-def _realise(target: Target, obj: Any, parent: Any, collection: Any) -> Any:
+def lacking(plan: Plan, room: Any) -> list[Target]:
+    """The targets whose meshes would have to be written to show a plan, as things stand; nothing is changed."""
+    existing = tagged_objects(room) if room is not None else {}
+    aside = away(room) if room is not None else {}
+    found = []
+    for target in plan.targets:
+        obj = existing.get(target.key, [aside.get(target.key)])[0]
+        if _has_mesh(target) and (
+            obj is None or (HELD not in obj and _lacks(obj, target, plan.digests[target.key][1]))
+        ):
+            found.append(target)
+    return found
+
+
+def new_mesh(target: Target, plan: Plan) -> Any:
+    """A mesh for a target that no object uses yet."""
+    mesh = bpy.data.meshes.new(_name(target))
+    write_arrays(mesh, plan.mesh(target), target.family, plan.digests[target.key][1])
+    return mesh
+
+
+def _realise(
+    target: Target, plan: Plan, obj: Any, parent: Any, collection: Any, made: dict[tuple[str, str], Any]
+) -> Any:
     """Make or update one object; returns it."""
-    digest = target_digest(target)
+    digest, shapes = plan.digests[target.key]
     is_same = obj is not None and obj.get(LINE) == digest
     if is_same and target.kind != "proxy" and obj.parent == parent:
         return obj
     if obj is None:
-        obj = _new_object(target, collection)
-    if target.role == "shell" or target.kind == "proxy":
-        matrix = _update_mesh(target, obj)
-    else:
+        obj = _new_object(target, collection, made.pop(target.key, None))
+    matrix = held_matrix(obj, target)
+    held = matrix is not None or (target.kind == "proxy" and is_pending(obj))
+    if target.kind in ("light", "camera"):
         (write_light if target.kind == "light" else write_camera)(obj.data, target.line)
-        matrix = target.matrix
-    _place(obj, matrix, parent)
+        matrix = target.matrix if matrix is None else matrix
+    elif matrix is None:
+        matrix = _update_mesh(target, plan, obj, shapes, made)
+    _place(obj, matrix, kept_parent(obj, parent), _CAMERA_TOLERANCE if target.kind == "camera" else EXACT)
     if not is_same:
         _write_fields(obj, target, digest)
+    if not is_same or HELD in obj:
+        remember(obj, target, held)
     return obj
 
 
-def _new_object(target: Target, collection: Any) -> Any:
+def _has_mesh(target: Target) -> bool:
+    return target.role == "shell" or target.kind == "proxy"
+
+
+def _name(target: Target) -> str:
+    return " ".join(part for part in target.key if part)
+
+
+def _new_object(target: Target, collection: Any, mesh: Any) -> Any:
     """An object of the right type with its tags, linked to its collection."""
-    name = " ".join(part for part in target.key if part)
+    name = _name(target)
     data: Any
     if target.kind == "light":
         data = bpy.data.lights.new(name, target.line["kind"].upper())
     elif target.kind == "camera":
         data = bpy.data.cameras.new(name)
     else:
-        data = bpy.data.meshes.new(name)
+        data = bpy.data.meshes.new(name) if mesh is None else mesh
     obj = bpy.data.objects.new(name, data)
     obj[ID] = target.key[0]
     if target.key[1]:
@@ -123,31 +188,49 @@ def _write_fields(obj: Any, target: Target, digest: str) -> None:
         obj[FIELD + name] = value
 
 
-def _update_mesh(target: Target, obj: Any) -> Any:
+def _lacks(obj: Any, target: Target, digest: str) -> bool:
+    """Whether the object's mesh has to be written: it is not the target's, and not one that the artist made."""
+    if obj.type != "MESH" or obj.data.get(DIGEST) == digest:
+        return False
+    mesh = obj.data
+    if mesh.get(DIGEST) is not None and not is_hand_made(mesh):
+        return True
+    return not (len(mesh.vertices) and target.kind == "proxy")
+
+
+def _update_mesh(target: Target, plan: Plan, obj: Any, digest: str, made: dict[tuple[str, str], Any]) -> Any:
     """Bring the object's mesh up to date; returns the matrix that the object should have with it.
 
     A mesh that the artist made is kept. Its object is fitted to the line's box when it does not fill it.
     """
     if obj.type != "MESH":
         return world_matrix(obj)
-    digest = shapes_digest(target.shapes, target.family)
     mesh = obj.data
-    if mesh.get(DIGEST) is not None and not is_hand_made(mesh):
-        if mesh.get(DIGEST) == digest:
+    if _lacks(obj, target, digest):
+        if target.key in made:
+            _exchange(obj, made.pop(target.key))
             return target.matrix
         if mesh.users > 1:  # an artist's linked copy shares it and must not change with it
             obj.data = mesh = bpy.data.meshes.new(obj.name)
-    elif len(mesh.vertices) and target.kind == "proxy":
+        write_arrays(mesh, plan.mesh(target), target.family, digest)
+    elif target.kind == "proxy" and len(mesh.vertices) and (mesh.get(DIGEST) is None or is_hand_made(mesh)):
         return fit_matrix(mesh, world_matrix(obj), target.line)
-    elif DIGEST in mesh and mesh.get(DIGEST) == digest:
-        return target.matrix
-    write_shapes(mesh, target.shapes, target.family, digest)
     return target.matrix
 
 
-def _place(obj: Any, matrix: Any, parent: Any) -> None:
+def _exchange(obj: Any, mesh: Any) -> None:
+    """Give the object a mesh that was made beforehand; the former one goes, and its name stays."""
+    former = obj.data
+    obj.data = mesh
+    if former.users == 0:
+        name = former.name
+        bpy.data.meshes.remove(former)
+        mesh.name = name
+
+
+def _place(obj: Any, matrix: Any, parent: Any, tolerance: float) -> None:
     """Put the object at a place in the room under its parent, unless it is there already."""
-    if obj.parent == parent and np.abs(np.array(world_matrix(obj)) - matrix).max() < _MATRIX_TOLERANCE:
+    if obj.parent == parent and np.abs(np.array(world_matrix(obj)) - matrix).max() < tolerance:
         return
     obj.parent = parent
     if parent is not None:
@@ -158,10 +241,7 @@ def _place(obj: Any, matrix: Any, parent: Any) -> None:
 
 def _remove(obj: Any) -> None:
     """Delete an object of ours; whatever was parented to it stays where it is."""
-    for child in list(obj.children):
-        matrix = world_matrix(child)
-        child.parent = None
-        child.matrix_basis = matrix
+    free_children(obj)
     data = obj.data
     bpy.data.objects.remove(obj, do_unlink=True)
     if data is not None and data.users == 0:

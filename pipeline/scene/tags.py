@@ -17,6 +17,11 @@ FIELD = "code_as_room_"  # + category, label, placement, parent, salience, shape
 ROLE = "code_as_room_role"  # on collections: "room", "shell", "layout", "lights", "cameras"
 COLOUR = "code_as_room_colour"  # on materials: "family/role"
 BUILT_IDS = "code_as_room_ids"  # on the room's collection: the ids of the proxies that were last built
+BUILT_LINES = "code_as_room_lines"  # on the room's collection: the layout lines that were last built, as JSON
+HELD = "code_as_room_held"  # on what the artist edited, copied, added or locked: builds leave it as it stands
+GROUP = "code_as_room_group"  # on an object of the artist whose parts (its untagged children) count with it
+AWAY = "code_as_room_away"  # on what a build set aside (see `holding`); on the collection it is kept in: its room
+COPIED = "code_as_room_copied"  # id of the line whose object the artist copied, until the program knows the copy
 DIGEST = "code_as_room_digest"  # on meshes: digest of the shapes that they were made from
 FINGERPRINT = "code_as_room_fingerprint"  # on meshes: digest of the mesh as it stood after it was made
 
@@ -24,8 +29,9 @@ SUB_COLLECTIONS = {"shell": "Room Shell", "layout": "Room Layout", "lights": "Ro
 
 
 def find_room_collection(scene: Any) -> Any | None:
-    """The add-on's own collection in this scene, or None."""
-    return next((c for c in scene.collection.children_recursive if c.get(ROLE) == "room"), None)
+    """The add-on's own collection in this scene, or None; one that is linked from another file only when it is the only one."""
+    rooms = [c for c in scene.collection.children_recursive if c.get(ROLE) == "room"]
+    return next((c for c in rooms if c.library is None and c.override_library is None), rooms[0] if rooms else None)
 
 
 def ensure_collections(scene: Any, name: str) -> dict[str, Any]:
@@ -64,7 +70,12 @@ def tagged_objects(room: Any) -> dict[tuple[str, str], list[Any]]:
 
 
 def world_matrix(obj: Any) -> Any:
-    """The object's matrix in the room from its own and its parents' settings, right before Blender's next update too."""
+    """The object's matrix in the room from its own and its parents' settings, right before Blender's next update too.
+
+    Where constraints, bones or vertices have a say it is what Blender worked out last.
+    """
+    if len(obj.constraints) or (obj.parent is not None and obj.parent_type != "OBJECT"):
+        return obj.matrix_world.copy()
     if obj.parent is None:
         return obj.matrix_basis.copy()
     return world_matrix(obj.parent) @ obj.matrix_parent_inverse @ obj.matrix_basis

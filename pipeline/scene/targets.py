@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which objects a `Record` asks for, and where: plain data, before Blender is touched."""
+"""Which objects a `Record` asks for, and where: plain data, worked out before Blender is touched and in any thread."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from ..program.prelude.proxies import proxy_shapes
 from ..program.prelude.record import Record
 from ..program.prelude.shape import Shape
 from ..program.prelude.shell import shell_pieces
+from .arrays import MeshArrays, mesh_arrays
 
 
 @dataclass(frozen=True)
@@ -39,6 +40,43 @@ class Target:
     parent: str | None = None
     line: dict[str, Any] = field(default_factory=dict)
     fields: dict[str, Any] = field(default_factory=dict)
+
+
+@dataclass
+class Plan:
+    """A record as Blender is to be made to show it.
+
+    Attributes:
+        targets: every parent before its children.
+        digests: of everything that a target asks for, and of its shapes, by the target's key.
+        record: what the plan was made from.
+        notes: a plain sentence for each number of the shell that had to be clamped.
+        arrays: meshes that were worked out already, by the digest of their shapes.
+    """
+
+    targets: list[Target]
+    digests: dict[tuple[str, str], tuple[str, str]]
+    record: Record
+    notes: list[str]
+    arrays: dict[str, MeshArrays] = field(default_factory=dict)
+
+    def mesh(self, target: Target) -> MeshArrays:
+        """The mesh of a target."""
+        digest = self.digests[target.key][1]
+        found = self.arrays.get(digest)
+        if found is None:
+            found = self.arrays[digest] = mesh_arrays(target.shapes)
+        return found
+
+
+def plan_record(record: Record) -> Plan:
+    """Everything about building a record that can be worked out without Blender."""
+    targets, notes = record_targets(record)
+    digests = {}
+    for target in targets:
+        shapes = shapes_digest(target.shapes, target.family)
+        digests[target.key] = (target_digest(target, shapes), shapes)
+    return Plan(parents_first(targets), digests, record, notes)
 
 
 def record_targets(record: Record) -> tuple[list[Target], list[str]]:
@@ -118,9 +156,8 @@ def parents_first(targets: list[Target]) -> list[Target]:
     return list(ordered.values())
 
 
-def target_digest(target: Target) -> str:
-    """A digest of everything that a target asks for."""
-    shapes = shapes_digest(target.shapes, target.family)
+def target_digest(target: Target, shapes: str) -> str:
+    """A digest of everything that a target asks for, from the digest of its shapes."""
     numbers = np.round(np.array(target.matrix, dtype=float), 7).tolist()
     parts = (target.kind, numbers, target.parent, sorted(target.line.items(), key=lambda item: item[0]), target.fields)
     return hashlib.sha1((shapes + repr(parts)).encode(), usedforsecurity=False).hexdigest()[:20]

@@ -15,6 +15,7 @@ from typing import Any
 import bpy
 
 from ..errors import SceneError
+from ..program.differences import loses_code
 
 PROGRAM = "room.py"
 MEMORY = "Code-as-Room Memory"
@@ -34,6 +35,13 @@ def is_hand_edited(room: Any, name: str) -> bool:
     return isinstance(block, bpy.types.Text) and block.get(_WRITTEN) != _digest(block.as_string())
 
 
+def mark_written(room: Any, name: str, on: bool) -> None:
+    """Take the text as it stands for what we wrote; False takes it for the artist's."""
+    block = room.get(name)
+    if isinstance(block, bpy.types.Text):
+        block[_WRITTEN] = _digest(block.as_string()) if on else ""
+
+
 def write_text(room: Any, name: str, text: str) -> str:
     """Make this the room's text of that name.
 
@@ -43,8 +51,7 @@ def write_text(room: Any, name: str, text: str) -> str:
     Raises:
         SceneError: a line is so long that Blender would stand still.
     """
-    if max(map(len, text.split("\n")), default=0) > _LONGEST_LINE:
-        raise SceneError(f"A line of {name} is too long for a text in Blender.", "Break it into shorter lines.")
+    check_lines(name, text)
     block = room.get(name)
     if not isinstance(block, bpy.types.Text):
         room[name] = block = bpy.data.texts.new(name)
@@ -52,15 +59,31 @@ def write_text(room: Any, name: str, text: str) -> str:
     notice = ""
     current = block.as_string()
     if current == text:
+        block[_WRITTEN] = _digest(current)
         return ""
     if current and block.get(_WRITTEN) != _digest(current) and _would_be_lost(name, current):
-        kept = bpy.data.texts.new(f"{name} (edited by hand)")
-        kept.from_string(current)
-        kept.use_fake_user = True
+        kept = _keep_aside(name, current)
         notice = f'Your edits of "{block.name}" could not be taken over; they were kept in "{kept.name}".'
+    elif name == PROGRAM and loses_code(current, text):
+        kept = _keep_aside(name, current)
+        notice = f'The program was written anew without your functions; the former one was kept in "{kept.name}".'
     block.from_string(text)
     block[_WRITTEN] = _digest(block.as_string())
     return notice
+
+
+def _keep_aside(name: str, text: str) -> Any:
+    """A text of its own with what would be lost."""
+    kept = bpy.data.texts.new(f"{name} (edited by hand)")
+    kept.from_string(text)
+    kept.use_fake_user = True
+    return kept
+
+
+def check_lines(name: str, text: str) -> None:
+    """SceneError when a line of the text is so long that Blender would stand still."""
+    if max(map(len, text.split("\n")), default=0) > _LONGEST_LINE:
+        raise SceneError(f"A line of {name} is too long for a text in Blender.", "Break it into shorter lines.")
 
 
 def _would_be_lost(name: str, current: str) -> bool:

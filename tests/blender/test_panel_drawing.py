@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
@@ -21,17 +22,22 @@ from PIL import Image, ImageDraw
 ICONS = {item.identifier for item in bpy.types.UILayout.bl_rna.functions["label"].parameters["icon"].enum_items}
 
 
+def options_of(function: str) -> set[str]:
+    """The arguments that a function of Blender's layouts takes."""
+    return set(bpy.types.UILayout.bl_rna.functions[function].parameters.keys())
+
+
 class Drawn:
     """A layout that records, and refuses what Blender would refuse: unknown icons, properties and operators."""
 
-    def __init__(self, said: list[str], off: list[str], disabled: bool = False) -> None:
-        self.said, self.off, self._disabled = said, off, disabled
-        self.enabled = True
+    def __init__(self, said: list[str], off: list[str], menus: list[str], disabled: bool = False) -> None:
+        self.said, self.off, self.menus, self._disabled = said, off, menus, disabled
+        self.enabled = self.active = True
 
     def _child(self, *_: Any, **__: Any) -> Drawn:
-        return Drawn(self.said, self.off, self._disabled or not self.enabled)
+        return Drawn(self.said, self.off, self.menus, self._disabled or not self.enabled)
 
-    row = column = box = _child
+    row = column = box = grid_flow = split = _child
 
     def _say(self, text: str, icon: str = "NONE") -> None:
         assert icon in ICONS, icon
@@ -43,15 +49,36 @@ class Drawn:
     def label(self, text: str = "", icon: str = "NONE") -> None:
         self._say(text, icon)
 
-    def prop(self, data: Any, name: str, text: str | None = None, **options: Any) -> None:
-        assert set(options) <= {"placeholder", "icon", "slider", "expand"}
-        self._say(data.bl_rna.properties[name].name if text is None else text)
+    def separator(self, **options: Any) -> None:
+        assert set(options) <= options_of("separator")
 
-    def operator(self, name: str, text: str | None = None, icon: str = "NONE", emboss: bool = True) -> Any:
+    def prop(self, data: Any, name: str, text: str | None = None, icon: str = "NONE", **options: Any) -> None:
+        assert set(options) <= options_of("prop")
+        self._say(data.bl_rna.properties[name].name if text is None else text, icon)
+
+    def operator(self, name: str, text: str | None = None, icon: str = "NONE", **options: Any) -> Any:
+        assert set(options) <= options_of("operator")
         group, verb = name.split(".")
         kind = getattr(getattr(bpy.ops, group), verb).get_rna_type()
         self._say(kind.name if text is None else text, icon)
         return SimpleNamespace(**{prop.identifier: None for prop in kind.properties})
+
+    def operator_menu_enum(self, name: str, property: str, text: str = "", icon: str = "NONE") -> None:
+        group, verb = name.split(".")
+        assert property in getattr(getattr(bpy.ops, group), verb).get_rna_type().properties
+        self._say(text, icon)
+
+    def menu(self, name: str, text: str = "", icon: str = "NONE") -> None:
+        assert hasattr(bpy.types, name)
+        self.menus.append(name)
+
+    def template_list(
+        self, kind: str, name: str, data: Any, items: str, active: Any, index: str, **options: Any
+    ) -> None:
+        assert set(options) <= options_of("template_list")
+        assert isinstance(getattr(active, index), int)
+        for place, item in enumerate(getattr(data, items)):
+            getattr(bpy.types, kind).draw_item(None, bpy.context, self._child(), data, item, 0, active, index, place)
 
     def progress(self, factor: float, text: str, type: str) -> None:
         assert 0.0 <= factor <= 1.0
@@ -68,14 +95,24 @@ def draw(title: str = "") -> Drawn:
     """Draw one panel, or all that would be shown."""
     from code_as_room import panels
 
-    drawn = Drawn([], [])
+    drawn = Drawn([], [], [])
     for cls in panels.panel_classes():
-        if title and cls.bl_label != title:
+        parent = getattr(cls, "bl_parent_id", "")
+        if title and cls.bl_label != title and getattr(getattr(bpy.types, parent, None), "bl_label", "") != title:
             continue
         if not hasattr(cls, "poll") or cls.poll(bpy.context):
             panel = SimpleNamespace(layout=drawn)
             panel.draw_state = partial(cls.draw_state, panel)
+            if hasattr(cls, "draw_header_preset"):
+                cls.draw_header_preset(panel, bpy.context)
             cls.draw(panel, bpy.context)
+    return drawn
+
+
+def opened(menu: str) -> Drawn:
+    """What a menu offers now."""
+    drawn, cls = Drawn([], [], []), getattr(bpy.types, menu)
+    cls.draw(SimpleNamespace(layout=drawn, stage=getattr(cls, "stage", "")), bpy.context)
     return drawn
 
 
@@ -165,19 +202,20 @@ def test_after_a_run_it_shows_the_room_and_what_became_of_the_objects(picture: s
     scene.code_as_room.iterations = 1
     bpy.ops.code_as_room.run_all()
     said = text_of(draw())
-    assert "Room 4.00 x" in said
-    assert "placed" in said and "Layout score" in said and "Done: 4 stages" in said
+    assert "4.00 x" in said
+    assert "placed" in said and "Round 1, score" in said and "Done: 4 stages" in said
     assert draw("Stages").said.count("done") == 4
     assert not bpy.ops.code_as_room.run_all.poll(), "there is nothing left to run"
 
     scene.code_as_room.known_width = 5.0
-    assert draw("Stages").said.count("out of date") == 4, "every size depends on the known width"
+    assert "5.00 x" in text_of(draw("Calibration")), "what is known takes effect at once"
+    assert draw("Stages").said.count("done") == 4, "and nothing has to be asked again"
     scene.code_as_room.known_width = 4.0
-    assert draw("Stages").said.count("done") == 4
+    assert "4.00 x" in text_of(draw("Calibration"))
 
     bpy.ops.code_as_room.write_outputs(directory=str(tmp_path / "new" / "folder"))
     assert (tmp_path / "new" / "folder" / "report.html").is_file()
-    assert "Open Report" in draw("Output").said
+    assert {"Report", "Folder"} <= set(draw("Output").said)
 
     saved = str(tmp_path / "room.blend")
     bpy.ops.wm.save_as_mainfile(filepath=saved)
@@ -188,7 +226,7 @@ def test_after_a_run_it_shows_the_room_and_what_became_of_the_objects(picture: s
     assert objects > 4
     bpy.ops.mesh.primitive_cube_add()
     bpy.ops.code_as_room.new_room()
-    assert [o.name for o in bpy.context.scene.objects] == ["Cube"], "only what we made is removed"
+    assert [o.name for o in bpy.context.scene.objects if o.type == "MESH"] == ["Cube"], "only what we made is removed"
     assert any(text.name.startswith("Memory of flat.png") for text in bpy.data.texts)
     assert "done" not in draw("Stages").said
 
@@ -247,8 +285,8 @@ def test_while_a_run_is_going_on_it_shows_progress_and_stop(picture: str, monkey
     progress = Progress("s03_layout", "Major layout", "Layout, round 2", 2, 6, "answered", 0.0, 3, 4)
     monkeypatch.setattr(driver, "progress_of", lambda scene: progress)
     monkeypatch.setattr(driver, "is_running", lambda: True)
-    drawn = draw("Stages")
-    assert "running" in drawn.said and "Stop" in drawn.said
+    drawn = draw()
+    assert "running" in drawn.said and "Stop (Esc)" in drawn.said
     assert "Layout, round 2: answered" in text_of(drawn)
     assert "Run to the End" not in drawn.said
     assert "Change" not in draw("Reference").said or not bpy.ops.code_as_room.load_picture.poll()
@@ -260,3 +298,33 @@ def test_stages_wait_for_the_stage_before_them(picture: str) -> None:
     assert state is not None
     assert [bool(row.blocked) for row in state.stages] == [False, True, True, True]
     assert "Scene analysis" in state.stages[1].blocked
+
+
+def test_the_menu_of_a_stage_offers_what_can_be_done_now(picture: str) -> None:
+    load(picture)
+    first, second = opened("CODE_AS_ROOM_MT_s01_analysis"), opened("CODE_AS_ROOM_MT_s02_graph")
+    assert {"Redo", "Redo from Here", "Redo Selected Objects Only"} <= set(first.off), "it has not run yet"
+    assert "Run" not in first.off and "Run to Here" not in first.off
+    assert "Run" in second.off, "it waits for the first"
+    assert "Run to Here" not in second.off
+    bpy.ops.code_as_room.run_to(stage="s02_graph")
+    first = opened("CODE_AS_ROOM_MT_s01_analysis")
+    assert {"Redo", "Redo from Here"}.isdisjoint(first.off) and "Run to Here" in first.off
+    state = view_state.peek(bpy.context.scene)
+    assert state is not None and [row.status for row in state.stages] == ["done", "done", "not run", "not run"]
+
+
+def test_every_panel_says_what_to_do_next_while_it_is_empty(picture: str) -> None:
+    load(picture)
+    assert "after the scene analysis" in text_of(draw("Detected Objects"))
+    assert "once it has run" in text_of(draw("Layout Loop"))
+
+
+def test_an_answer_that_waits_is_told(picture: str) -> None:
+    load(picture)
+    scene = bpy.context.scene
+    state = view_state.peek(scene)
+    assert state is not None
+    waiting = replace(state.stages[0], status="answered")
+    view_state._states[scene.session_uid] = replace(state, stages=(waiting, *state.stages[1:]))
+    assert "answered, not applied" in text_of(draw("Stages"))

@@ -109,13 +109,13 @@ def test_questions_and_the_stages_own_work_run_off_the_main_thread_and_builds_on
         seen["after the build"] = threading.current_thread()
         return [MinorObjects(by_parent={})]
 
-    build = ResolvedScene.build
+    commit = ResolvedScene.commit
 
-    def noted(self: ResolvedScene, text: str) -> None:
+    def noted(self: ResolvedScene, plan: Any, made: Any) -> None:
         seen["build"] = threading.current_thread()
-        build(self, text)
+        commit(self, plan, made)
 
-    monkeypatch.setattr(ResolvedScene, "build", noted)
+    monkeypatch.setattr(ResolvedScene, "commit", noted)
     driver.start(scene, [stage(body)])
     tick_until(lambda: not driver.is_running())
     main = threading.main_thread()
@@ -210,7 +210,7 @@ def test_a_picture_that_was_exchanged_meanwhile_ends_the_run(scene: Any, monkeyp
     scene.code_as_room.picture = None
     tick_until(lambda: not driver.is_running())
     assert "changed" in driver.outcome_of(scene).problem.message
-    assert not any("code_as_room_kind" in o for o in scene.objects)
+    assert not any(o.get("code_as_room_kind") == "floor" for o in scene.objects)
 
 
 def test_two_runs_at_once_are_refused(scene: Any, monkeypatch: pytest.MonkeyPatch) -> None:

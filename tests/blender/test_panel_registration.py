@@ -12,9 +12,11 @@ import pytest
 from code_as_room.operators import properties
 
 OPERATORS = (
-    "load_picture", "use_image", "new_room", "run_stage", "run_all", "stop", "write_outputs", "open_report", "open_text"
+    "load_picture", "use_image", "new_room", "run_stage", "run_all", "stop", "write_outputs", "open_report", "open_text",
+    "run_to", "redo_from", "open_results", "select_objects", "lock_objects", "include_objects", "take_over",
+    "show_round", "take_round", "draw_rounds", "compare_round",
 )  # fmt: skip
-PANELS = ("reference", "calibration", "stages", "room", "output")
+PANELS = ("reference", "calibration", "stages", "objects", "rounds", "output")
 
 
 @pytest.fixture(autouse=True)
