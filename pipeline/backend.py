@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from .artifacts.camera import CameraModel
 from .artifacts.layout import LayoutEdit
@@ -52,4 +53,35 @@ class SceneBackend(Protocol):
 
     def save_copy(self, path: Path) -> None:
         """Save a copy of the .blend, everything packed, without changing the artist's file."""
+        ...
+
+
+@runtime_checkable
+class HandScene(Protocol):
+    """A scene whose program an artist can edit as text, and whose objects can be held."""
+
+    def text_edits(self) -> list[LayoutEdit] | None:
+        """What the artist changed in the program's text since it was built, as typed edits; None for an unedited text.
+
+        A text that says the same in other words, or whose functions changed, has an empty list.
+
+        Raises:
+            ProgramError: the text is outside the room language; its line counts from the top of the whole text.
+        """
+        ...
+
+    def accept_text(self, on: bool = True, renamed: Mapping[str, str] | None = None) -> None:
+        """The text as it stands is taken over, so that building does not set it aside; False takes that back.
+
+        Args:
+            renamed: objects that the text calls otherwise, former id -> id; they keep what they are.
+        """
+        ...
+
+    def hold(self, ids: frozenset[str]) -> None:
+        """No build deletes the objects with these ids: one that has no place for them sets them aside."""
+        ...
+
+    def forget(self, ids: set[str]) -> None:
+        """The artist removed these, so nothing of them is kept aside."""
         ...

@@ -210,6 +210,18 @@ def parse_layout(text: str) -> Layout:
     return layout_of(layout_statements(parse(text, DEFAULT_LIMITS)))
 
 
+def parse_line(text: str) -> Line:
+    """One printed layout line.
+
+    Raises:
+        ProgramError: the text is not exactly one layout line, or the line says something that no room can have.
+    """
+    statements = layout_statements(parse(text, DEFAULT_LIMITS))
+    if len(statements) != 1:
+        raise ProgramError("one layout line is needed", 0)
+    return statements[0].line
+
+
 def layout_of(statements: list[Statement]) -> Layout:
     """The typed lines of these statements. Raises ProgramError when there is no room line."""
     rooms = [s.line for s in statements if isinstance(s.line, RoomLine)]

@@ -8,15 +8,16 @@ import re
 from dataclasses import dataclass
 
 from ..artifacts.analysis import Finding
-from ..artifacts.layout import LayoutEdit, ProxyLine
+from ..artifacts.layout import Layout, LayoutEdit, ProxyLine, RoomLine
 from ..errors import ProgramError
-from .edits import Edited, apply_edits, edit_proxies
+from .edits import LISTS, Edited, apply_edits, edit_layout
 from .limits import DEFAULT_LIMITS
-from .lines import Statement, called_name, layout_of, layout_statements, parse_layout, print_line, quoted
+from .lines import Statement, called_name, layout_of, layout_statements, name_of, parse_layout, print_line, quoted
 from .parse_safe import parse
 
 __all__ = ["apply_edits", "patch_text"]
 
+_SHELL = ("wall", "door", "window", "opening")
 _LINE = re.compile(r"[^\r\n]*(?:\r\n|\r|\n|$)")
 
 
@@ -43,14 +44,21 @@ def patch_text(text: str, edits: list[LayoutEdit]) -> tuple[str, list[Finding]]:
     text = text.removeprefix(mark)
     tree = parse(text, DEFAULT_LIMITS)
     statements = layout_statements(tree)
-    edited = edit_proxies(layout_of(statements), edits)
+    edited = edit_layout(layout_of(statements), edits)
     source = _Source(text, tree)
-    changes = _proxy_changes(source, statements, edited) + _furnish_changes(source, tree, edited)
+    changes = _proxy_changes(source, statements, edited) + _line_changes(source, statements, edited)
+    changes += _furnish_changes(source, tree, edited)
     for change in sorted(changes, key=lambda c: (c.start, c.end), reverse=True):
         text = text[: change.start] + change.text + text[change.end :]
-    if parse_layout(text).proxies != edited.proxies:
+    if _sorted(parse_layout(text)) != _sorted(edited.layout()):
         raise ProgramError("the edits cannot be written into this text", 0, "Put each layout line on its own line.")
     return mark + text, edited.findings
+
+
+def _sorted(layout: Layout) -> Layout:
+    """The layout with all lines but proxies in the order of their ids: a text may have them in any."""
+    groups = {name: sorted(getattr(layout, name), key=lambda line: str(line.id)) for name in LISTS}
+    return layout.model_copy(update=groups)
 
 
 class _Source:
@@ -133,6 +141,28 @@ def _proxy_changes(source: _Source, statements: list[Statement], edited: Edited)
             changes.append(source.inserted_before(next(iter(old.values())).node, text))
         else:
             changes.append(source.inserted_after(_last_of_shell(statements), text))
+    return changes
+
+
+def _line_changes(source: _Source, statements: list[Statement], edited: Edited) -> list[_Change]:
+    """What happens to the lines that are no proxies; a new one comes after the last of its kind."""
+    changes: list[_Change] = []
+    new_lines: dict[str, list[str]] = {}
+    for statement in statements:
+        if isinstance(statement.line, ProxyLine):
+            continue
+        line = edited.room if isinstance(statement.line, RoomLine) else edited.lines.get(statement.line.id)
+        if line is None:
+            changes.append(source.removed(statement.node))
+        elif line != statement.line:
+            changes.append(source.replaced(statement.node, print_line(line)))
+    for identifier, line in edited.lines.items():
+        if identifier not in edited.lines_before:
+            new_lines.setdefault(name_of(line), []).append(print_line(line))
+    for kind, lines in new_lines.items():
+        same = [s.node for s in statements if s.name == kind]
+        after = same[-1] if same else _last_of_shell(statements) if kind in _SHELL else statements[-1].node
+        changes.append(source.inserted_after(after, "\n".join(lines)))
     return changes
 
 

@@ -47,7 +47,7 @@ def edits_of(scene: BlenderScene) -> list[tuple[Any, ...]]:
     bpy.context.view_layer.update()
     first, second = scene.read_back(), scene.read_back()
     assert first == second
-    assert all(edit.origin == "artist" for edit in first)
+    assert all(edit.origin in ("artist", "parent") for edit in first)
     return first
 
 
@@ -91,6 +91,34 @@ def test_a_moved_parent_takes_its_child_along(scene: BlenderScene) -> None:
     edits = {edit.id: edit for edit in edits_of(scene)}
     assert edits.keys() == {"nightstand_1", "lamp_1"}
     assert edits["lamp_1"].centre == pytest.approx((0.9, 0.95, 0.775))
+    assert (edits["nightstand_1"].origin, edits["lamp_1"].origin) == ("artist", "parent")
+    assert edits["lamp_1"].reason == "moved along with nightstand_1"
+    settle(scene)
+    assert thing("lamp_1").parent == thing("nightstand_1")
+
+
+def test_a_child_that_was_moved_on_its_moved_parent_is_edited_itself(scene: BlenderScene) -> None:
+    thing("nightstand_1").location.y -= 0.3
+    thing("lamp_1").location.x += 0.05
+    assert {(e.id, e.origin) for e in edits_of(scene)} == {("nightstand_1", "artist"), ("lamp_1", "artist")}
+    settle(scene)
+
+
+def test_a_parent_that_moves_away_under_its_child_is_the_only_edit(scene: BlenderScene) -> None:
+    stand, lamp = thing("nightstand_1"), thing("lamp_1")
+    place = lamp.matrix_world.copy()
+    stand.location.x += 0.1
+    bpy.context.view_layer.update()
+    lamp.matrix_world = place
+    assert [e.id for e in edits_of(scene)] == ["nightstand_1"]
+    settle(scene)
+
+
+def test_a_scaled_parent_scales_its_child(scene: BlenderScene) -> None:
+    thing("nightstand_1").scale = (1.2, 1.2, 1.2)
+    edits = {edit.id: edit for edit in edits_of(scene)}
+    assert edits["lamp_1"].size == pytest.approx((0.36, 0.36, 0.54))
+    assert edits["lamp_1"].origin == "parent"
     settle(scene)
 
 
@@ -125,7 +153,7 @@ def test_scaled_up_from_its_base(scene: BlenderScene) -> None:
     assert edit.op == "resize"
     assert edit.centre == pytest.approx((1.7, -1.1, 0.9))
     settle(scene)
-    assert tuple(thing("chair_1").scale) == pytest.approx((1, 1, 1))
+    assert thing("chair_1").scale.z == 2.0, "what the artist did stays as it is"
 
 
 def test_deleted(scene: BlenderScene) -> None:
