@@ -367,8 +367,11 @@ class Job:
                 self._meanwhile.agree()
             self.must_put_back = error is not None and session is not None and not self._applied
             self.put_back()
+            wrote = self.wrote
             self.backend.save_memory(dump_memory(self.run.memory))
             self._flush()
+            if error is None:
+                self.wrote = wrote  # a stage that was done has written all there is, in its own undo step
         except RoomError as problem:
             self.error = self.error or problem
 

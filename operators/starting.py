@@ -9,11 +9,13 @@ Where pydantic or Pillow are missing, as in a copy of the source instead of the 
 
 from __future__ import annotations
 
+import compileall
 import importlib
 import logging
 import sys
 import textwrap
 import threading
+from pathlib import Path
 from typing import Any
 
 import bpy
@@ -135,6 +137,9 @@ def _import(start: _Start) -> None:
             importlib.import_module(f"{PACKAGE}.{name}")
         except Exception:  # the main thread meets the same error, where it is shown
             return
+    # What imports bpy is left to the main thread; after an installation it need not compile it as well.
+    for folder in ("operators", "panels"):
+        compileall.compile_dir(Path(__file__).resolve().parents[1] / folder, quiet=2)
 
 
 def _look() -> float | None:
