@@ -13,9 +13,39 @@ _command: Any = None
 
 
 def _classes() -> tuple[type, ...]:
-    from . import picture_ops, properties, result_ops, stage_ops
+    from . import (
+        connection_ops,
+        consent,
+        fitted_view,
+        hand_ops,
+        journal_ops,
+        object_ops,
+        overlay,
+        picture_ops,
+        picture_sources,
+        program_ops,
+        properties,
+        result_ops,
+        rounds,
+        stage_ops,
+    )
 
-    modules = (properties, picture_ops, stage_ops, result_ops)
+    modules = (
+        properties,
+        picture_ops,
+        picture_sources,
+        fitted_view,
+        stage_ops,
+        consent,
+        object_ops,
+        rounds,
+        result_ops,
+        program_ops,
+        hand_ops,
+        journal_ops,
+        overlay,
+        connection_ops,
+    )
     return tuple(cls for module in modules for cls in module.CLASSES)
 
 
@@ -31,7 +61,7 @@ def register() -> None:
     global _command
     import bpy
 
-    from . import handlers, properties
+    from . import handlers, keymaps, object_list, overlay, properties, rounds
 
     utils: Any = bpy.utils
     scene_type: Any = bpy.types.Scene
@@ -40,7 +70,11 @@ def register() -> None:
     for cls in _classes():
         bpy.utils.register_class(cls)
     scene_type.code_as_room = pointer(type=properties.CodeAsRoomSettings, name="Code-as-Room")
+    object_list.register()
+    rounds.register()
+    overlay.register()
     handlers.register()
+    keymaps.register()
     _command = utils.register_cli_command(COMMAND, _run_command)
 
 
@@ -49,12 +83,17 @@ def unregister() -> None:
     global _command
     import bpy
 
-    from . import handlers
+    from . import connection, handlers, keymaps, object_list, overlay, rounds
 
+    connection.forget()
     if _command is not None:
         bpy.utils.unregister_cli_command(_command)
         _command = None
+    keymaps.unregister()
     handlers.unregister()
+    overlay.unregister()
+    rounds.unregister()
+    object_list.unregister()
     scene_type: Any = bpy.types.Scene
     del scene_type.code_as_room
     for cls in reversed(_classes()):

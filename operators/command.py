@@ -90,6 +90,7 @@ def _one_line(text: str) -> str:
 
 def _perform(options: argparse.Namespace) -> int:
     from ..pipeline.picture import load_picture
+    from ..pipeline.spending import begin_total
     from .keeping import MemoryFile
 
     picture = load_picture(options.picture)
@@ -97,6 +98,7 @@ def _perform(options: argparse.Namespace) -> int:
     folder = prepare_folder(options.out)
     kept = MemoryFile(folder, options.resume)
     memory = kept.load()
+    begin_total(client, memory.cost()[2])
     memory.settings = _settings(options, memory.settings)
     for note in picture.notes:
         print(f"Note: {note}")
@@ -187,15 +189,17 @@ def _settings(options: argparse.Namespace, earlier: dict[str, str]) -> dict[str,
 def _client(options: argparse.Namespace) -> ModelClient:
     from ..pipeline.models.recorded import Recorder
     from ..pipeline.models.registry import ClientSettings, make_client, settings_from_environment
+    from ..pipeline.spending import metered
 
     if options.replies is not None:
         settings = ClientSettings(kind="recorded", folder=str(options.replies))
     elif options.base_url:
         key = os.environ.get(options.key_env, "") if options.key_env else os.environ.get("CODE_AS_ROOM_API_KEY", "")
-        settings = ClientSettings(kind="openai", base_url=options.base_url, model=options.model or "", api_key=key)
+        given = {"PROVIDER": "custom", "BASE_URL": options.base_url, "MODEL": options.model or "", "API_KEY": key}
+        settings = settings_from_environment({**os.environ, **{f"CODE_AS_ROOM_{name}": v for name, v in given.items()}})
     else:
         settings = settings_from_environment()
-    client = make_client(settings)
+    client = metered(make_client(settings), settings)
     if options.record is None:
         return client
     return Recorder(client, prepare_folder(options.record, "--record"))

@@ -7,12 +7,58 @@ from typing import Any
 
 import bpy
 
-from . import view_state
+from ..pipeline.errors import RoomError
+from . import object_list, view_state
+
+
+def _background_changed(settings: Any, context: Any) -> None:
+    """The camera's background image follows the sliders."""
+    from . import fitted_view
+
+    fitted_view.show_background(settings.id_data)
+
+
+def _overlay_changed(settings: Any, context: Any) -> None:
+    """Handles and boxes come and go."""
+    from .overlay import shown
+
+    shown.redraw()
 
 
 def _changed(settings: Any, context: Any) -> None:
     """Settings are inputs of every stage, so what the panel says of the stages may change with them."""
     view_state.refresh(settings.id_data)
+
+
+def _size_changed(settings: Any, context: Any) -> None:
+    """A size that the artist knows: what stands follows at once, and nothing is asked again."""
+    from . import correcting, driver
+
+    scene = settings.id_data
+    try:
+        correcting.follow_settings(scene)
+    except RoomError as error:
+        view_state.refresh(scene)
+        if view_state.has_something(scene):
+            driver.note_outcome(scene, "", view_state.Problem.of(error))
+
+
+def _width_switched(settings: Any, context: Any) -> None:
+    """A width that was never given begins with the one that was found, so that a tick alone changes nothing."""
+    _begin_with_present(settings, "use_known_width", "known_width", 0)
+    _size_changed(settings, context)
+
+
+def _height_switched(settings: Any, context: Any) -> None:
+    """As `_width_switched`, for the height of the walls."""
+    _begin_with_present(settings, "use_wall_height", "wall_height", 2)
+    _size_changed(settings, context)
+
+
+def _begin_with_present(settings: Any, switch: str, value: str, axis: int) -> None:
+    state = view_state.peek(settings.id_data)
+    if getattr(settings, switch) and not settings.is_property_set(value) and state is not None and state.room_size:
+        setattr(settings, value, state.room_size[axis])
 
 
 class CodeAsRoomSettings(bpy.types.PropertyGroup):
@@ -26,10 +72,39 @@ class CodeAsRoomSettings(bpy.types.PropertyGroup):
     picture_name: bpy.props.StringProperty(  # type: ignore[valid-type]
         name="Picture", description="File name of the reference image"
     )
+    reference_opacity: bpy.props.FloatProperty(  # type: ignore[valid-type]
+        name="Opacity",
+        description="How much of the picture is seen when looking through its camera",
+        subtype="FACTOR",
+        default=0.5,
+        min=0.0,
+        max=1.0,
+        update=_background_changed,
+    )
+    reference_in_front: bpy.props.BoolProperty(  # type: ignore[valid-type]
+        name="In Front",
+        description="Draw the picture over the layout instead of behind it",
+        default=True,
+        update=_background_changed,
+    )
+    show_corners: bpy.props.BoolProperty(  # type: ignore[valid-type]
+        name="Show Corners",
+        description="Show the floor's corners when looking through the fitted camera: drag a corner to where the picture "
+        "shows it and the camera is fitted anew. Drag at the plus on an edge to add a corner, Ctrl-click one to remove it",
+        default=True,
+        update=_overlay_changed,
+    )
+    show_boxes: bpy.props.BoolProperty(  # type: ignore[valid-type]
+        name="Show Boxes",
+        description="Show the objects' boxes when looking through the fitted camera: blue is detected, green placed, "
+        "yellow put off, red dropped, grey left out. Click a name to make its object active, drag its box to correct it",
+        default=False,
+        update=_overlay_changed,
+    )
     use_known_width: bpy.props.BoolProperty(  # type: ignore[valid-type]
         name="Known width",
         description="You know the room's inner width, left to right in the picture; every size follows from it",
-        update=_changed,
+        update=_width_switched,
     )
     known_width: bpy.props.FloatProperty(  # type: ignore[valid-type]
         name="Known width",
@@ -40,10 +115,10 @@ class CodeAsRoomSettings(bpy.types.PropertyGroup):
         min=0.5,
         max=100.0,
         precision=3,
-        update=_changed,
+        update=_size_changed,
     )
     use_wall_height: bpy.props.BoolProperty(  # type: ignore[valid-type]
-        name="Wall height", description="You know how high the walls are", update=_changed
+        name="Wall height", description="You know how high the walls are", update=_height_switched
     )
     wall_height: bpy.props.FloatProperty(  # type: ignore[valid-type]
         name="Wall height",
@@ -54,7 +129,7 @@ class CodeAsRoomSettings(bpy.types.PropertyGroup):
         min=1.0,
         max=20.0,
         precision=3,
-        update=_changed,
+        update=_size_changed,
     )
     notes: bpy.props.StringProperty(  # type: ignore[valid-type]
         name="Notes",
@@ -69,6 +144,18 @@ class CodeAsRoomSettings(bpy.types.PropertyGroup):
         min=1,
         max=5,
         update=_changed,
+    )
+    objects: bpy.props.CollectionProperty(  # type: ignore[valid-type]
+        name="Objects",
+        description="A row for each object that was detected or added",
+        type=object_list.CodeAsRoomObject,
+    )
+    active_object: bpy.props.IntProperty(  # type: ignore[valid-type]
+        name="Object",
+        description="Choose an object to see what became of it; it is selected in the viewport",
+        get=object_list.get_active,
+        set=object_list.set_active,
+        options={"SKIP_SAVE"},
     )
 
 
@@ -89,4 +176,4 @@ def memory_settings(settings: Any, earlier: dict[str, str]) -> dict[str, str]:
     return result
 
 
-CLASSES = (CodeAsRoomSettings,)
+CLASSES = (*object_list.CLASSES, CodeAsRoomSettings)

@@ -13,6 +13,7 @@ from . import driver, rooms, view_state
 from .base import RoomOperator, allow, manager
 
 REPORT = "report.html"
+PICTURES = {"FOLDER": "", "TOP": "top.png", "VIEW": "view.png"}
 
 
 class CODE_AS_ROOM_OT_write_outputs(RoomOperator):
@@ -88,6 +89,47 @@ class CODE_AS_ROOM_OT_open_report(RoomOperator):
         bpy.ops.wm.url_open(url=path.as_uri())
 
 
+class CODE_AS_ROOM_OT_open_results(RoomOperator):
+    """Open the folder of the results that were written last, or one of their pictures"""
+
+    bl_idname = "code_as_room.open_results"
+    bl_label = "Open Room Results"
+    bl_options = {"REGISTER"}
+
+    what: bpy.props.EnumProperty(  # type: ignore[valid-type]
+        name="What",
+        description="What to open",
+        items=(
+            ("FOLDER", "Folder", "The folder with all results"),
+            ("TOP", "From Above", "The room through the fitted camera"),
+            ("VIEW", "From a Corner", "The room from a raised corner"),
+        ),
+    )
+
+    @classmethod
+    def description(cls, context: bpy.types.Context, properties: Any) -> str:
+        """The tooltip says what."""
+        said = {
+            "FOLDER": "Open the folder with all results in the file browser of the system",
+            "TOP": "Open the picture of the room through the fitted camera",
+            "VIEW": "Open the picture of the room from a raised corner",
+        }
+        return said.get(properties.what, cls.__doc__ or "")
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Results must have been written in this session."""
+        return allow(cls, "" if rooms.results_of(context.scene) else "Write the results first")
+
+    def perform(self, context: bpy.types.Context) -> None:
+        """Open it with the system's program."""
+        folder = rooms.results_of(context.scene)
+        path = folder / PICTURES[self.what] if folder is not None else None
+        if path is None or not path.exists():
+            raise RoomError("It is not there any more.", "Write the results again.")
+        bpy.ops.wm.path_open(filepath=str(path))
+
+
 class CODE_AS_ROOM_OT_open_text(RoomOperator):
     """Show the room's program or its memory in a text editor"""
 
@@ -132,4 +174,9 @@ def show_text(context: Any, text: Any) -> None:
     spaces[0].top = 0
 
 
-CLASSES = (CODE_AS_ROOM_OT_write_outputs, CODE_AS_ROOM_OT_open_report, CODE_AS_ROOM_OT_open_text)
+CLASSES = (
+    CODE_AS_ROOM_OT_write_outputs,
+    CODE_AS_ROOM_OT_open_report,
+    CODE_AS_ROOM_OT_open_results,
+    CODE_AS_ROOM_OT_open_text,
+)

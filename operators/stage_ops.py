@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import bpy
@@ -10,8 +11,11 @@ import bpy
 from ..pipeline.errors import RoomError
 from ..pipeline.stages import all_stages
 from ..pipeline.stages.base import Stage
-from . import driver, view_state
+from . import consent, driver, object_list, view_state
 from .base import RoomOperator, allow, log, stage_blocker
+from .view_state import StageRow
+
+NEXT = "NEXT"
 
 
 class StageOperator(RoomOperator):
@@ -25,6 +29,8 @@ class StageOperator(RoomOperator):
         """From the window: start, and let the timer go on."""
         if bpy.app.background:
             return self.execute(context)
+        if consent.ask_first(context, self):
+            return {"FINISHED"}
         try:
             self.begin(context)
         except RoomError as error:
@@ -48,42 +54,136 @@ class StageOperator(RoomOperator):
         return allow(cls, stage_blocker(context))
 
 
-def stage_by_id(identifier: str) -> Stage:
-    """A stage by its id, such as "s01_analysis"; RoomError when there is none."""
-    for stage in all_stages():
-        if stage.id == identifier:
-            return stage
+def _stage_items() -> list[tuple[str, str, str]]:
+    first = (NEXT, "The Next One", "The first stage that is not done")
+    return [first, *((stage.id, stage.title, f"The stage {stage.title}") for stage in all_stages())]
+
+
+def _stage_property() -> Any:
+    return bpy.props.EnumProperty(name="Stage", description="Which stage", items=_stage_items())
+
+
+def place_of(context: Any, identifier: str) -> int:
+    """The place of a stage in the order of all; RoomError when there is none, or it waits for another one."""
+    stages, state = all_stages(), view_state.peek(context.scene)
+    rows = {row.id: row for row in state.stages} if state is not None else {}
+    for place, stage in enumerate(stages):
+        row = rows.get(stage.id)
+        if stage.id == identifier or (identifier == NEXT and (row is None or row.status != "done")):
+            return place
+    if identifier == NEXT:
+        raise RoomError("Every stage is done.", "Redo one to run it again.")
     raise RoomError(f"There is no stage {identifier!r}.")
 
 
+def row_of(context: Any, identifier: str) -> StageRow | None:
+    """The panel's row of a stage."""
+    state = view_state.peek(context.scene)
+    return state.stage(identifier) if state is not None else None
+
+
+def partial_blocker(context: Any, row: StageRow | None) -> str:
+    """Why a stage cannot redo only the selected objects, "" when it can."""
+    if row is None or not row.partial:
+        return "This stage always does all objects"
+    if row.status not in ("done", "stale", "failed"):
+        return "Run the whole stage first"
+    if not object_list.selected_names(context.scene):
+        return "Select objects of the room in the viewport first"
+    return ""
+
+
 class CODE_AS_ROOM_OT_run_stage(StageOperator):
-    """Run this stage; answers that were already given are used again"""
+    """Run one stage; answers that were already given are used again"""
 
     bl_idname = "code_as_room.run_stage"
     bl_label = "Run Stage"
     bl_options = {"REGISTER"}
 
-    stage: bpy.props.StringProperty(name="Stage", description="Id of the stage, such as s01_analysis")  # type: ignore[valid-type]
+    stage: _stage_property()  # type: ignore[valid-type]
     fresh: bpy.props.BoolProperty(  # type: ignore[valid-type]
         name="Ask Again", description="Ask again even where an answer to the same question is kept", default=False
+    )
+    selected: bpy.props.BoolProperty(  # type: ignore[valid-type]
+        name="Only Selected",
+        description="Do only the objects anew that are selected in the viewport; everything else stays as it is",
+        default=False,
+        options={"SKIP_SAVE"},
     )
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: Any) -> str:
         """The tooltip names the stage, and says what it waits for."""
-        state = view_state.peek(context.scene)
-        row = next((r for r in state.stages if r.id == properties.stage), None) if state else None
+        row = row_of(context, properties.stage)
         if row is None:
-            return "Run this stage; answers that were already given are used again"
+            return "Run the first stage that is not done; answers that were already given are used again"
         if row.blocked:
             return f"{row.title} cannot run yet. {row.blocked}"
+        if properties.selected:
+            blocker = partial_blocker(context, row)
+            return blocker or f"Redo {row.title} for the selected objects only; everything else stays as it is"
         if properties.fresh:
             return f"Redo {row.title}: ask everything again, whatever was answered before"
+        if row.status == "answered":
+            return f"Run {row.title}; everything was answered already, so nothing is asked"
         return f"Run {row.title}; answers that were already given are used again"
 
     def begin(self, context: bpy.types.Context) -> None:
         """Start one stage, whether it is done or not."""
-        driver.start(context.scene, [stage_by_id(self.stage)], again=True, fresh=self.fresh)
+        stage = all_stages()[place_of(context, self.stage)]
+        if not self.selected:
+            driver.start(context.scene, [stage], again=True, fresh=self.fresh)
+            return
+        blocker = partial_blocker(context, row_of(context, stage.id))
+        if blocker:
+            raise RoomError(f"{blocker}.")
+        names = object_list.selected_names(context.scene)
+        driver.start(context.scene, [stage], again=True, fresh=self.fresh, only=names)
+
+
+class CODE_AS_ROOM_OT_run_to(StageOperator):
+    """Run what is not done, up to and with this stage"""
+
+    bl_idname = "code_as_room.run_to"
+    bl_label = "Run to Stage"
+    bl_options = {"REGISTER"}
+
+    stage: _stage_property()  # type: ignore[valid-type]
+
+    @classmethod
+    def description(cls, context: bpy.types.Context, properties: Any) -> str:
+        """The tooltip names the stage."""
+        row = row_of(context, properties.stage)
+        return f"Run what is not done, up to and with {row.title}" if row is not None else (cls.__doc__ or "")
+
+    def begin(self, context: bpy.types.Context) -> None:
+        """Start the stages that are not done."""
+        driver.start(context.scene, all_stages()[: place_of(context, self.stage) + 1])
+
+
+class CODE_AS_ROOM_OT_redo_from(StageOperator):
+    """Redo this stage and every one after it: ask everything again, whatever was answered before"""
+
+    bl_idname = "code_as_room.redo_from"
+    bl_label = "Redo from Stage"
+    bl_options = {"REGISTER"}
+
+    stage: _stage_property()  # type: ignore[valid-type]
+
+    @classmethod
+    def description(cls, context: bpy.types.Context, properties: Any) -> str:
+        """The tooltip names the stage."""
+        row = row_of(context, properties.stage)
+        if row is None:
+            return cls.__doc__ or ""
+        if row.blocked:
+            return f"{row.title} cannot run yet. {row.blocked}"
+        return f"Redo {row.title} and every stage after it: ask everything again, whatever was answered before"
+
+    def begin(self, context: bpy.types.Context) -> None:
+        """Start the stages."""
+        stages: Sequence[Stage] = all_stages()[place_of(context, self.stage) :]
+        driver.start(context.scene, stages, again=True, fresh=True)
 
 
 class CODE_AS_ROOM_OT_run_all(StageOperator):
@@ -123,4 +223,10 @@ class CODE_AS_ROOM_OT_stop(RoomOperator):
         driver.stop()
 
 
-CLASSES = (CODE_AS_ROOM_OT_run_stage, CODE_AS_ROOM_OT_run_all, CODE_AS_ROOM_OT_stop)
+CLASSES = (
+    CODE_AS_ROOM_OT_run_stage,
+    CODE_AS_ROOM_OT_run_to,
+    CODE_AS_ROOM_OT_redo_from,
+    CODE_AS_ROOM_OT_run_all,
+    CODE_AS_ROOM_OT_stop,
+)

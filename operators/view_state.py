@@ -8,25 +8,24 @@ driver call it. `peek` is what `draw` and `poll` use: a look into a dictionary.
 from __future__ import annotations
 
 import logging
-from collections import Counter
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import bpy
 
-from ..pipeline.artifacts.analysis import Calibration, Finding, SceneAnalysis
-from ..pipeline.artifacts.layout import LayoutProgram
+from ..pipeline.artifacts.analysis import Finding
 from ..pipeline.errors import RoomError
-from ..pipeline.memory import Memory, load_memory
-from ..pipeline.picture import ReferencePicture
-from ..pipeline.report import all_findings, floor_size
-from ..pipeline.run import Run
-from ..pipeline.stages import all_stages
-from . import clients, properties, reference
-from .scene_backend import ResolvedScene
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from ..pipeline.report_objects import ObjectRow
+    from ..pipeline.report_rounds import RoundRow
 
 log = logging.getLogger(__name__)
-MOST_FINDINGS = 6
+MOST_EDITS = 12
+"""Edits by hand that are told one by one."""
 
 
 @dataclass(frozen=True)
@@ -43,14 +42,21 @@ class Problem:
             return cls(error.message, error.fix)
         return cls("Something unexpected went wrong.", "The details are in Blender's console; please report them.")
 
+    @property
+    def sentence(self) -> str:
+        """Both in one."""
+        return f"{self.message} {self.fix}".strip()
+
 
 @dataclass(frozen=True)
 class StageRow:
     """One stage in the panel.
 
     Attributes:
-        status: "not run", "done", "stale" (something it read has changed) or "failed".
+        status: "not run", "answered" (only its result is missing, nothing would be asked), "done", "stale" (something
+            it read has changed) or "failed".
         blocked: why it cannot run yet, "" when it can.
+        partial: whether it can do some objects anew and leave the others.
     """
 
     id: str
@@ -58,11 +64,18 @@ class StageRow:
     status: str
     detail: str = ""
     blocked: str = ""
+    partial: bool = False
 
 
 @dataclass(frozen=True)
 class RoomState:
-    """A room as the panel shows it; plain values only, no Blender data."""
+    """A room as the panel shows it; plain values only, no Blender data.
+
+    Attributes:
+        last_edits: edits by hand that were taken over last, in words; last_count: how many they were.
+        hand_edits: edits by hand in all.
+        reference_key: names the reference image, "" when there is none.
+    """
 
     picture_name: str = ""
     picture_size: tuple[int, int] = (0, 0)
@@ -76,9 +89,13 @@ class RoomState:
     error_px: float = 0.0
     score: float | None = None
     hand_edits: int = 0
+    last_edits: tuple[str, ...] = ()
+    last_count: int = 0
     ledger: tuple[tuple[str, int], ...] = ()
     severities: tuple[tuple[str, int], ...] = ()
     findings: tuple[Finding, ...] = ()
+    objects: tuple[ObjectRow, ...] = ()
+    rounds: tuple[RoundRow, ...] = ()
     has_layout: bool = False
     has_memory: bool = False
 
@@ -90,9 +107,30 @@ class RoomState:
         problem = self.problem or self.client_problem
         return problem.message.rstrip(".") if problem else ""
 
+    @cached_property
+    def by_id(self) -> Mapping[str, ObjectRow]:
+        """The objects by id."""
+        return {row.id: row for row in self.objects}
+
+    @cached_property
+    def by_name(self) -> Mapping[str, ObjectRow]:
+        """The objects that stand in the layout by what they are called there."""
+        return {row.name: row for row in self.objects if row.name}
+
+    @cached_property
+    def locked(self) -> tuple[ObjectRow, ...]:
+        """The objects that no automatic step may change."""
+        return tuple(row for row in self.objects if row.locked)
+
+    def stage(self, identifier: str) -> StageRow | None:
+        """A stage's row."""
+        return next((row for row in self.stages if row.id == identifier), None)
+
 
 _states: dict[int, RoomState] = {}
 _failures: dict[tuple[int, str], Problem] = {}
+listeners: list[Callable[[Any, RoomState], None]] = []
+"""Called with the scene and its state after each refresh, on the main thread."""
 
 
 def peek(scene: Any) -> RoomState | None:
@@ -100,16 +138,29 @@ def peek(scene: Any) -> RoomState | None:
     return _states.get(scene.session_uid)
 
 
+def has_something(scene: Any) -> bool:
+    """Whether anything was found or built in this scene; without a picture a setting is only noted."""
+    state = peek(scene)
+    return state is not None and state.has_memory
+
+
 def refresh(scene: Any) -> RoomState:
     """Work the state out anew. Main thread only; never raises."""
+    from . import state_reading
+
     try:
-        state = _read(scene)
+        state = state_reading.read(scene)
     except RoomError as error:
         state = RoomState(picture_name=scene.code_as_room.picture_name, problem=Problem.of(error))
     except Exception as error:
         log.exception("The state of the room could not be read")
         state = RoomState(picture_name=scene.code_as_room.picture_name, problem=Problem.of(error))
     _states[scene.session_uid] = state
+    for listener in tuple(listeners):
+        try:
+            listener(scene, state)
+        except Exception:
+            log.exception("What follows the state of the room could not be brought up to date")
     return state
 
 
@@ -130,70 +181,12 @@ def note_failure(scene_uid: int, stage: str, error: BaseException) -> None:
     _failures[(scene_uid, stage)] = Problem.of(error)
 
 
+def failure(scene_uid: int, stage: str) -> Problem | None:
+    """Why a stage failed when it ran last; None when it did not."""
+    return _failures.get((scene_uid, stage))
+
+
 def forget_failure(scene_uid: int, stage: str = "") -> None:
     """A stage, or every stage of a scene, runs again."""
     for key in [k for k in _failures if k[0] == scene_uid and stage in ("", k[1])]:
         del _failures[key]
-
-
-def _read(scene: Any) -> RoomState:
-    state = RoomState()
-    try:
-        client = clients.current_client()
-        state = replace(state, answers=client.describes, uses_model=client.name != "builtin")
-    except RoomError as error:
-        state = replace(state, client_problem=Problem.of(error), uses_model=True)
-    picture = reference.kept_picture(scene)
-    if picture is None:
-        return state
-    state = replace(state, picture_name=picture.name, picture_size=(picture.width, picture.height))
-    backend = ResolvedScene(scene)
-    try:
-        memory = load_memory(backend.load_memory())
-    except RoomError as error:
-        return replace(state, problem=Problem.of(error), has_memory=True)
-    memory.settings = properties.memory_settings(scene.code_as_room, memory.settings)
-    return _with_memory(state, scene.session_uid, memory, picture, backend)
-
-
-def _with_memory(
-    state: RoomState, uid: int, memory: Memory, picture: ReferencePicture, backend: ResolvedScene
-) -> RoomState:
-    run = Run(picture, memory, clients.NOBODY, backend)
-    calibration, program = memory.latest(Calibration), memory.latest(LayoutProgram)
-    analysis = memory.latest(SceneAnalysis)
-    findings = all_findings(memory)
-    if calibration is not None:
-        size = (*floor_size(calibration), calibration.height)
-        kind = calibration.camera.kind
-        state = replace(state, room_size=size, camera_kind=kind, error_px=calibration.error_px)
-    states: list[str] = [entry.state for entry in program.ledger] if program is not None else []
-    if not states and analysis is not None:
-        states = ["detected"] * len(analysis.objects)
-    return replace(
-        state,
-        stages=_rows(run, uid),
-        score=program.score.total if program is not None else None,
-        has_layout=program is not None,
-        has_memory=bool(memory.entries),
-        hand_edits=len(run.hand_edits()),
-        ledger=tuple(Counter(states).items()),
-        severities=tuple(Counter(f.severity for f in findings).items()),
-        findings=tuple(findings[:MOST_FINDINGS]),
-    )
-
-
-def _rows(run: Run, uid: int) -> tuple[StageRow, ...]:
-    rows: list[StageRow] = []
-    blocked = ""
-    for stage in all_stages():
-        status: str = run.status(stage)
-        failure = _failures.get((uid, stage.id))
-        detail = "what it was made from has changed" if status == "stale" else ""
-        if failure is not None:
-            rows.append(StageRow(stage.id, stage.title, "failed", f"{failure.message} {failure.fix}".strip(), blocked))
-        else:
-            rows.append(StageRow(stage.id, stage.title, status, detail, blocked))
-        if status == "not run" and not blocked:
-            blocked = f"It needs the stage before it: {stage.title}"
-    return tuple(rows)

@@ -5,17 +5,17 @@ from __future__ import annotations
 
 
 def panel_classes() -> tuple[type, ...]:
-    """The panels (and their lists) of the tab "Room"."""
-    from . import calibration, objects, output, reference, stages
+    """The panels of the tab "Room"; parents before their sub-panels."""
+    from . import calibration, objects, output, reference, rounds, stages
 
-    modules = (reference, calibration, stages, objects, output)
-    return tuple(cls for module in modules for cls in module.CLASSES)
+    modules = (reference, calibration, objects, stages, rounds, output)
+    return (stages.CODE_AS_ROOM_PT_running, *(cls for module in modules for cls in module.CLASSES))
 
 
 def _classes() -> tuple[type, ...]:
-    from . import preferences
+    from . import objects, preferences, stages
 
-    return (*preferences.classes(), *panel_classes())
+    return (*preferences.classes(), *objects.PARTS, *stages.PARTS, *panel_classes())
 
 
 def register() -> None:

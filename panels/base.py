@@ -38,3 +38,25 @@ def base_package() -> str:
     from .. import __package__ as package
 
     return package or ""
+
+
+def known_operator(name: str) -> bool:
+    """Whether an operator such as "code_as_room.stop" is registered."""
+    group, verb = name.split(".")
+    return hasattr(bpy.types, f"{group.upper()}_OT_{verb}")
+
+
+def can_now(name: str) -> bool:
+    """Whether an operator is registered and can be called now."""
+    if not known_operator(name):
+        return False
+    group, verb = name.split(".")
+    return bool(getattr(getattr(bpy.ops, group), verb).poll())
+
+
+def region_width(context: Any) -> float:
+    """Width of the region in which we draw, pixels at a scale of 1."""
+    region = getattr(context, "region", None)
+    preferences = getattr(context, "preferences", None)
+    scale = preferences.system.ui_scale if preferences is not None else 1.0
+    return float(region.width if region is not None else 300) / max(0.1, scale)

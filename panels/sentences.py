@@ -21,9 +21,15 @@ def line_length(context: Any, icon: bool = False) -> int:
     return int(min(_WIDEST, max(_NARROWEST, (width - _MARGIN - (20.0 if icon else 0.0)) / _CHARACTER)))
 
 
-def draw_sentence(layout: Any, text: str, context: Any, icon: str = "NONE", alert: bool = False) -> None:
-    """A sentence over as many lines as it needs."""
-    lines = textwrap.wrap(text, line_length(context, icon != "NONE"))
+def draw_sentence(
+    layout: Any, text: str, context: Any, icon: str = "NONE", alert: bool = False, beside: int = 0
+) -> None:
+    """A sentence over as many lines as it needs.
+
+    Args:
+        beside: how many small buttons stand beside it on the same row.
+    """
+    lines = textwrap.wrap(text, max(_NARROWEST - 4, line_length(context, icon != "NONE") - 4 * beside))
     column = layout.column(align=True)
     column.alert = alert
     column.scale_y = 0.85

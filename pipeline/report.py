@@ -83,7 +83,7 @@ def answered_by(memory: Memory, describes: str = "") -> str:
 def _client_words(client: str) -> str:
     if client == "builtin":
         return "the built-in picture analysis, no model"
-    return "recorded answers" if client == "recorded" else client or "an unknown client"
+    return "recorded answers" if client.split(":")[0] == "recorded" else client or "an unknown client"
 
 
 def _facts(memory: Memory) -> Markup:

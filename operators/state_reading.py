@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Works out what the panel shows of a room (`view_state.RoomState`) from its memory, its picture and the settings.
+
+Memory's entries never change once they are written, so an artifact is validated once and kept as long as its entry.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, OrderedDict
+from dataclasses import replace
+from typing import Any, TypeVar
+
+from pydantic import BaseModel
+
+from ..pipeline.artifacts.analysis import Calibration, SceneAnalysis
+from ..pipeline.artifacts.corrections import Corrections
+from ..pipeline.artifacts.hand import HandEdits
+from ..pipeline.artifacts.layout import LayoutEdit, LayoutProgram
+from ..pipeline.errors import RoomError
+from ..pipeline.memory import Entry, Memory
+from ..pipeline.picture import ReferencePicture
+from ..pipeline.program.words import edit_in_words
+from ..pipeline.report import all_findings, floor_size
+from ..pipeline.report_objects import ObjectRow, object_rows
+from ..pipeline.report_rounds import round_rows
+from ..pipeline.run import Run
+from ..pipeline.run_corrections import edits_of, found_of, program_of
+from ..pipeline.stages import all_stages
+from ..pipeline.stages.base import View
+from . import clients, journals, reference, room_memory, view_state
+from .view_state import Problem, RoomState, StageRow
+
+A = TypeVar("A", bound=BaseModel)
+LOOP = "s03_layout"
+_MOST_ARTIFACTS, _MOST = 64, 6
+_artifacts: OrderedDict[int, tuple[Entry, BaseModel]] = OrderedDict()
+_known: OrderedDict[tuple[int, ...], tuple[list[Entry], dict[str, Any]]] = OrderedDict()
+
+
+def read(scene: Any) -> RoomState:
+    """The state of one scene's room. Main thread only.
+
+    Raises:
+        RoomError: the picture or the memory cannot be read; what is known without them is lost to the caller.
+    """
+    state, client = RoomState(), clients.NOBODY
+    try:
+        client = clients.current_client()
+        state = replace(state, answers=client.describes, uses_model=client.name != "builtin")
+    except RoomError as error:
+        state = replace(state, client_problem=Problem.of(error), uses_model=True)
+    picture = room_memory.picture_of(scene)
+    if picture is None:
+        was_there = bool(scene.code_as_room.picture_name)
+        return replace(state, problem=Problem.of(reference.missing(scene))) if was_there else state
+    state = replace(state, picture_name=picture.name, picture_size=(picture.width, picture.height))
+    try:
+        run = room_memory.run_of(scene)
+        run.client = client  # answers are kept by who gave them
+        run.journal = run.journal or journals.journal_of(picture.sha256)
+    except RoomError as error:
+        return replace(state, problem=Problem.of(error), has_memory=True)
+    return _with_memory(state, scene.session_uid, run)
+
+
+def _with_memory(state: RoomState, uid: int, run: Run) -> RoomState:
+    known = _facts(run.memory, run.picture)
+    return replace(state, **known, stages=_stages(run, uid), has_memory=bool(run.memory.entries))
+
+
+def _facts(memory: Memory, picture: ReferencePicture) -> dict[str, Any]:
+    """What memory alone decides, worked out once for the same entries: most refreshes change nothing of it."""
+    written = [entry for entry in memory.entries if entry.type != "Answer"]
+    key = tuple(id(entry) for entry in written)
+    # The entries are kept beside what follows from them, so that their ids cannot become those of others.
+    found = _known.get(key)
+    if found is None:
+        found = _known[key] = (written, _read_facts(memory, picture))
+        while len(_known) > _MOST:
+            _known.popitem(last=False)
+    return found[1]
+
+
+def _read_facts(memory: Memory, picture: ReferencePicture) -> dict[str, Any]:
+    """Fields of `RoomState`."""
+    program, edits = program_of(memory), edits_of(memory)
+    rows = _object_rows(memory, picture, program, edits)
+    last = kept(memory, HandEdits)
+    # What only moved along with what carries it is no edit of the artist's.
+    made = [edit for edit in last.edits if edit.origin != "parent"] if last is not None else []
+    findings = all_findings(memory)
+    return {
+        **_camera_facts(memory),
+        "score": program.score.total if program is not None else None,
+        "has_layout": program is not None,
+        "hand_edits": len([e for e in edits if e.origin != "parent"]),
+        "last_edits": tuple(edit_in_words(edit) for edit in made[-view_state.MOST_EDITS :]),
+        "last_count": len(made),
+        "ledger": tuple(Counter(row.state for row in rows).items()),
+        "severities": tuple(Counter(f.severity for f in findings).items()),
+        "findings": tuple(findings),
+        "objects": rows,
+        "rounds": round_rows(kept(memory, LayoutProgram, (LOOP,))),
+    }
+
+
+def _camera_facts(memory: Memory) -> dict[str, Any]:
+    calibration = kept(memory, Calibration)
+    if calibration is None:
+        return {}
+    return {
+        "room_size": (*floor_size(calibration), calibration.height),
+        "camera_kind": calibration.camera.kind,
+        "error_px": calibration.error_px,
+    }
+
+
+def _object_rows(
+    memory: Memory, picture: ReferencePicture, program: LayoutProgram | None, edits: list[LayoutEdit]
+) -> tuple[ObjectRow, ...]:
+    found, analysis = found_of(memory), kept(memory, SceneAnalysis)
+    corrections = kept(memory, Corrections) or Corrections()
+    return object_rows(
+        found.analysis if found is not None else analysis,
+        analysis,
+        kept(memory, Calibration),
+        program,
+        corrections,
+        edits,
+        View(picture, hand_edits=tuple(edits), corrections=corrections).locked,
+    )
+
+
+def kept(memory: Memory, kind: type[A], stages: tuple[str, ...] = ()) -> A | None:
+    """As `Memory.latest`, validated once for each entry. What comes back is shared: never change it."""
+    entry = memory.latest_entry(kind.__name__, stages or None)
+    if entry is None:
+        return None
+    # The entry is kept beside its artifact, so that its id cannot become another's.
+    found = _artifacts.get(id(entry))
+    if found is None:
+        found = _artifacts[id(entry)] = (entry, kind.model_validate(entry.output))
+        while len(_artifacts) > _MOST_ARTIFACTS:
+            _artifacts.popitem(last=False)
+    artifact = found[1]
+    return artifact if isinstance(artifact, kind) else None
+
+
+def forget_all() -> None:
+    """Another file is opened."""
+    _artifacts.clear()
+    _known.clear()
+
+
+def _stages(run: Run, uid: int) -> tuple[StageRow, ...]:
+    rows: list[StageRow] = []
+    blocked = ""
+    for stage in all_stages():
+        status: str = run.status(stage)
+        failure = view_state.failure(uid, stage.id)
+        detail = "What it was made from has changed" if status == "stale" else ""
+        shown = status if failure is None else "failed"
+        detail = detail if failure is None else failure.sentence
+        rows.append(StageRow(stage.id, stage.title, shown, detail, blocked, stage.partial))
+        if status in ("not run", "answered") and not blocked:
+            blocked = f"It needs the stage before it: {stage.title}"
+    return tuple(rows)
