@@ -8,7 +8,7 @@ from typing import Any
 import bpy
 from bpy.app.handlers import persistent
 
-from . import driver, fitted_view, journals, own_room, room_memory, rooms, view_state
+from . import driver, fitted_view, journals, own_room, room_memory, rooms, state_reading, view_state
 
 
 @persistent  # type: ignore[untyped-decorator]
@@ -18,6 +18,7 @@ def _before_load(*_: Any) -> None:
     room_memory.forget_all()
     rooms.forget_all()
     view_state.forget_all()
+    state_reading.forget_all()
     fitted_view.forget_views()
 
 

@@ -64,8 +64,36 @@ def read(scene: Any) -> RoomState:
 
 
 def _with_memory(state: RoomState, uid: int, run: Run) -> RoomState:
-    known = _facts(run.memory, run.picture)
-    return replace(state, **known, stages=_stages(run, uid), has_memory=bool(run.memory.entries))
+    known, stages = _facts(run.memory, run.picture), _stages(run, uid)
+    state = replace(state, **known, stages=stages, has_memory=bool(run.memory.entries))
+    if not state.uses_model or state.client_problem is not None:
+        return state
+    return replace(state, estimate=_estimate(run, stages), spending=_spending(run))
+
+
+def _estimate(run: Run, stages: tuple[StageRow, ...]) -> str:
+    """What the stages that are left may cost, "" where nothing is asked of a service."""
+    left = [row.id for row in stages if row.status not in ("done", "answered")]
+    rounds = run.memory.settings.get("iterations", "")
+    try:
+        estimate = clients.run_estimate(left, int(rounds) if rounds.isdigit() else 5) if left else None
+    except RoomError:
+        return ""  # the run itself says what is wrong
+    return estimate.sentence() if estimate is not None else ""
+
+
+def _spending(run: Run) -> str:
+    """What this room has cost, and the cap; "" where no money is spent."""
+    try:
+        meter = clients.room_meter(run.picture.sha256, run.memory.cost()[2])
+    except RoomError:
+        return ""
+    words = f"${meter.spent:.2f} spent" if meter.spent else ""
+    words += (
+        f" of at most ${meter.cap:.2f}" if meter.cap and words else f"At most ${meter.cap:.2f}" if meter.cap else ""
+    )
+    unpriced = f"; the price of {', '.join(meter.unpriced)} is not known" if meter.unpriced else ""
+    return words + unpriced if words else unpriced.removeprefix("; ").capitalize()
 
 
 def _facts(memory: Memory, picture: ReferencePicture) -> dict[str, Any]:

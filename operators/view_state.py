@@ -75,6 +75,7 @@ class RoomState:
         last_edits: edits by hand that were taken over last, in words; last_count: how many they were.
         hand_edits: edits by hand in all.
         reference_key: names the reference image, "" when there is none.
+        estimate: what running the stages that are left may cost, in words; spending: what was spent, and the cap.
     """
 
     picture_name: str = ""
@@ -98,6 +99,8 @@ class RoomState:
     rounds: tuple[RoundRow, ...] = ()
     has_layout: bool = False
     has_memory: bool = False
+    estimate: str = ""
+    spending: str = ""
 
     @property
     def blocker(self) -> str:

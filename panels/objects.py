@@ -228,6 +228,7 @@ class CODE_AS_ROOM_PT_hand_edits(RoomPanel):
             if state.hand_edits > state.last_count:
                 layout.label(text=f"{plural(state.hand_edits, 'edit')} in all", icon="BLANK1")
         layout.operator("code_as_room.take_over", icon="FILE_REFRESH")
+        layout.operator("code_as_room.add_to_room", icon="ADD")
         if state.locked:
             column = layout.column(align=True)
             for row in state.locked:

@@ -12,7 +12,7 @@ from ..operators import driver, journals, stage_ops, view_state
 from ..operators.job import Progress
 from ..operators.view_state import RoomState, StageRow
 from ..pipeline.stages import all_stages
-from .base import RoomPanel, base_package
+from .base import RoomPanel, base_package, known_operator
 from .sentences import draw_sentence, line_length, plural
 
 ICONS = {
@@ -73,6 +73,9 @@ class CODE_AS_ROOM_PT_stages(RoomPanel):
         big.scale_y = 1.4
         if progress is None:
             big.operator("code_as_room.run_all", icon="PLAY")
+            for sentence in (state.estimate, state.spending):
+                if sentence:
+                    draw_sentence(layout, sentence, context)
         else:
             big.enabled = not progress.stopping
             big.operator("code_as_room.stop", text="Stop (Esc)", icon="CANCEL")
@@ -99,6 +102,8 @@ class CODE_AS_ROOM_PT_options(RoomPanel):
         notes.active = state.uses_model
         notes.prop(settings, "notes", placeholder="Hint for the model")
         column.prop(settings, "iterations")
+        if known_operator("code_as_room.forget_answers"):
+            layout.operator("code_as_room.forget_answers", icon="TRASH")
 
 
 class StageMenu(bpy.types.Menu):

@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 
 from .artifacts.analysis import Calibration, Finding, SceneAnalysis
 from .artifacts.graph import SceneGraph
+from .artifacts.hand import HandEdits
 from .artifacts.layout import Iteration, LayoutEdit, LayoutProgram, LedgerEntry, ProxyLine
 from .errors import RoomError
 from .memory import Entry, Memory
@@ -234,6 +235,7 @@ def edit_words(edit: LayoutEdit) -> str:
         "remove": "taken out",
         "recategorise": f"called {edit.category or 'something else'}",
         "rename": f"renamed to {edit.new_id or '?'}",
+        "line": "changed",
         "reparent": f"put on {edit.parent or 'the ' + (edit.placement or 'floor')}",
     }[edit.op]
     resized = edit.op == "move" and edit.size is not None
@@ -292,6 +294,7 @@ def all_findings(memory: Memory) -> list[Finding]:
         memory.latest(SceneGraph),
         memory.latest(LayoutProgram, (LAYOUT_STAGE,)),
         memory.latest(LayoutProgram),
+        memory.latest(HandEdits),
     )
     found = {(f.severity, f.about, f.message): f for a in artifacts if a is not None for f in a.findings}
     order = list(_SEVERITIES)

@@ -148,9 +148,9 @@ def curtain(
     u, v = np.meshgrid(np.linspace(0, 1, columns), np.linspace(0, 1, rows))
     mark = seed_of(seed)
     loose = (1 - v) ** 0.7  # pinched at the top, free below
-    phase = u + 0.012 * loose * ripples((mark, "phase"), 3 * u, 0.3 * v, 0.5)
+    phase = u + 0.012 * loose * ripples((mark, "phase"), 3.0 * u, 0.3 * v, 0.5)
     turn = math.tau * count * phase
-    deep = 0.72 + 0.28 * loose * (1 + 0.5 * ripples((mark, "depth"), 2 * u, v, 0.4))
+    deep = 0.72 + 0.28 * loose * (1 + 0.5 * ripples((mark, "depth"), 2.0 * u, v, 0.4))
     y = (np.sin(turn) + 0.25 * np.sin(2 * turn + 0.7)) * deep
     x = u - 0.5 + 0.16 / count * np.sin(2 * turn) * deep
     if tie:

@@ -73,4 +73,4 @@ def fitted(vertices: Floats, size: tuple[float, float, float]) -> Floats:
     """The vertices stretched so that their bounding box is `size` round the origin."""
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     extent = np.maximum(high - low, 1e-12)
-    return (vertices - (low + high) / 2) / extent * np.array(size)
+    return np.asarray((vertices - (low + high) / 2) / extent * np.array(size))
