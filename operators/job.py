@@ -161,6 +161,27 @@ class Job:
             self.backend.save_memory(dump_memory(self.run.memory))
         return True
 
+    def settle(self) -> bool:
+        """What is left to do once the job is over and its worker gone; False when that has to wait. Main thread only.
+
+        The worker may have left a memory behind that others have written on since: only its answers count, which the
+        caller adds to the file's memory.
+
+        Raises:
+            RoomError: the scene is gone.
+        """
+        self.backend.discard()
+        if not self.must_put_back:
+            return True
+        if not self._built:
+            self.must_put_back = False  # it built nothing, so what stands is others' work
+            return True
+        self._meanwhile.agree()
+        if not self.put_back():
+            return False
+        self.backend.flush()
+        return True
+
     # ---- the worker's side: pure data only ----
 
     def _go_on(self, move: Callable[[], StageSession]) -> None:

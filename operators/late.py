@@ -50,10 +50,7 @@ def pump() -> None:
         return
     for job in list(_jobs):
         try:
-            put_back = job.put_back()
-            if put_back:
-                job.backend.flush()
-            if put_back and not job.leaves_worker:
+            if not job.leaves_worker and job.settle():
                 _jobs.remove(job)
                 _keep_answers(job)
         except RoomError as error:

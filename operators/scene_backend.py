@@ -129,6 +129,11 @@ class ResolvedScene:
         with self._lock:
             self._unsaved = text
 
+    def discard(self) -> None:
+        """Drop the text that waits for `flush`: the job that left it is over, and the file has gone on since."""
+        with self._lock:
+            self._unsaved = None
+
     def flush(self) -> None:
         """Write the text that `save_memory` kept."""
         with self._lock:

@@ -12,7 +12,7 @@ from typing import Any
 import bpy
 import code_as_room
 import pytest
-from code_as_room.operators import clients, driver, late
+from code_as_room.operators import clients, driver, late, room_memory
 from code_as_room.operators.building import Building
 from code_as_room.operators.scene_backend import ResolvedScene
 from code_as_room.pipeline.artifacts.graph import MinorObjects
@@ -304,6 +304,22 @@ def test_stop_is_over_soon_and_the_late_answer_is_kept_not_applied(scene: Any, c
     driver.start(scene, [stage(builds_after_thinking)], again=True)
     tick_until(lambda: not driver.is_running())
     assert driver.outcome_of(scene).problem is None
+
+
+def test_what_was_done_after_a_stop_outlives_the_late_answer(scene: Any, client: Client) -> None:
+    run_to_the_slow_question(scene, client)
+    driver.stop()
+    tick_until(lambda: not driver.is_running())
+    thing("desk").location.x += 0.25
+    bpy.context.view_layer.update()
+    run = room_memory.run_of(scene)
+    run.take_over_edits()
+    room_memory.keep(run)
+    assert len(kept(scene, "HandEdits")) == 1
+    client.go_on.set()
+    tick_until(lambda: not late._jobs)
+    assert len(kept(scene, "HandEdits")) == 1, "the late answer must not bring back the memory of before"
+    assert place("desk") == (-0.75, 0.0) and program(scene)["desk"] == (-0.75, 0.0)
 
 
 def test_a_build_shows_nothing_before_all_of_it_is_ready(scene: Any) -> None:
