@@ -61,7 +61,10 @@ def definitions() -> dict[str, Definition]:
         for node in ast.parse(text).body:
             if isinstance(node, ast.FunctionDef):
                 source = ast.get_source_segment(text, node) or ""
-                uses = frozenset(n.id for n in ast.walk(node) if isinstance(n, ast.Name))
+                bound = {n.id for n in ast.walk(node) if isinstance(n, ast.Name) and not isinstance(n.ctx, ast.Load)}
+                bound |= {a.arg for a in ast.walk(node) if isinstance(a, ast.arg)}
+                # A def's own names may be spelt as other defs are.
+                uses = frozenset(n.id for n in ast.walk(node) if isinstance(n, ast.Name)) - bound
                 doc = ast.get_docstring(node) or ""
                 found[node.name] = Definition(node.name, source, uses, doc, node, path.stem)
     return found
@@ -146,7 +149,7 @@ def _fit(wanted: list[str], hints: list[str], name: list[str]) -> float:
         return 1.0
     shared = len(set(wanted) & set(name))
     head = 0.5 if wanted[-1] == name[-1] else 0.0
-    said = 0.3 * shared / max(len(wanted), len(name))
+    said = 0.3 * shared / max(len(wanted), len(name)) + (0.05 if set(name) <= set(wanted) else 0.0)
     hinted = 0.15 * len(set(hints) & set(name)) / len(name)
     return (
         head + said + hinted
