@@ -45,12 +45,18 @@ def manager(context: Any) -> Any:
     return context.window_manager
 
 
-def stage_blocker(context: Any) -> str:
-    """Why no stage can run now, "" when one can. No I/O: polls call it on every redraw."""
+def busy_blocker(context: Any) -> str:
+    """Why the room cannot be changed now, "" when it can: a run, or Edit mode. No I/O: polls call it on every redraw."""
     if driver.is_running():
         return "A run is going on; wait for it, or stop it"
-    if context.mode != "OBJECT":
-        return "Go back to Object mode first"
+    return "" if context.mode == "OBJECT" else "Go back to Object mode first"
+
+
+def stage_blocker(context: Any) -> str:
+    """Why no stage can run now, "" when one can. No I/O: polls call it on every redraw."""
+    busy = busy_blocker(context)
+    if busy:
+        return busy
     state = view_state.peek(context.scene)
     return state.blocker if state is not None else ""
 

@@ -42,13 +42,6 @@ def follow_settings(scene: Any) -> list[Finding]:
     return _done(scene, run, bring_up_to_date(run))
 
 
-def blocker(context: Any) -> str:
-    """Why nothing can be corrected now, "" when it can. No I/O: polls call it on every redraw."""
-    if driver.is_running():
-        return "A run is going on; wait for it, or stop it"
-    return "" if context.mode == "OBJECT" else "Go back to Object mode first"
-
-
 def _ready(scene: Any) -> Run:
     if driver.is_running():
         raise RoomError("A run is going on.", "Wait for it, or stop it; then correct.")

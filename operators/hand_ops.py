@@ -9,7 +9,7 @@ import bpy
 
 from ..pipeline.scene.tags import ROLE, find_room_collection
 from . import driver, own_room
-from .base import RoomOperator, allow
+from .base import RoomOperator, allow, busy_blocker
 
 
 class CODE_AS_ROOM_OT_add_to_room(RoomOperator):
@@ -22,10 +22,9 @@ class CODE_AS_ROOM_OT_add_to_room(RoomOperator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Something must be selected that is not in the room yet."""
-        if driver.is_running():
-            return allow(cls, "A run is going on; wait for it, or stop it")
-        if context.mode != "OBJECT":
-            return allow(cls, "Go back to Object mode first")
+        busy = busy_blocker(context)
+        if busy:
+            return allow(cls, busy)
         room = find_room_collection(context.scene)
         if room is None:
             return allow(cls, "There is no room yet; run the stages up to the layout first")

@@ -13,7 +13,7 @@ from ..pipeline.program.words import edits_taken_over
 from ..pipeline.scene.tags import find_room_collection
 from ..pipeline.scene.texts import PROGRAM, is_hand_edited
 from . import driver, fitted_view, own_room, room_memory, rooms, view_state
-from .base import RoomOperator, allow, manager
+from .base import RoomOperator, allow, busy_blocker, manager
 from .scene_backend import ResolvedScene
 
 _LINES_ABOVE = 8
@@ -30,10 +30,9 @@ class CODE_AS_ROOM_OT_apply_program(RoomOperator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """The text must have been edited, and nothing else be going on."""
-        if driver.is_running():
-            return allow(cls, "A run is going on; wait for it, or stop it")
-        if context.mode != "OBJECT":
-            return allow(cls, "Go back to Object mode first")
+        busy = busy_blocker(context)
+        if busy:
+            return allow(cls, busy)
         room = find_room_collection(context.scene)
         if room is None or rooms.room_text(context.scene, "PROGRAM") is None:
             return allow(cls, "There is no program yet; run the stages up to the layout first")

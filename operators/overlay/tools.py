@@ -16,7 +16,7 @@ from ...pipeline.artifacts.corrections import Corrections
 from ...pipeline.errors import RoomError
 from ...pipeline.geometry.polygon import Point
 from .. import correcting, driver, fitted_view, view_state
-from ..base import RoomOperator, log
+from ..base import RoomOperator, busy_blocker, log
 from . import draft, hits, shown
 from .composing import Frame, Hot
 from .drawing import ui_scale
@@ -33,10 +33,9 @@ FINISHED: set[Any] = {"FINISHED"}
 
 def analysis_blocker(context: Any) -> str:
     """Why nothing can be corrected now, "" when it can. No I/O."""
-    if driver.is_running():
-        return "A run is going on; wait for it, or stop it"
-    if context.mode != "OBJECT":
-        return "Go back to Object mode first"
+    busy = busy_blocker(context)
+    if busy:
+        return busy
     state = view_state.peek(context.scene)
     if state is None or not state.picture_name:
         return "Load a picture of a room first"
