@@ -8,14 +8,16 @@ VENV := .venv
 RUN := $(VENV)/bin
 OUT ?= out/demo
 BLENDER ?= blender
+JOBS ?= 2
 
 .PHONY: demo test lint setup extension test-desktop screenshots benchmark clean
 
 demo: setup
 	$(RUN)/code-as-room samples/bedroom/picture.png --replies samples/bedroom/replies --out $(OUT)
 
+# Two processes side by side; a test file stays in one of them.
 test: setup
-	$(RUN)/python -m pytest
+	$(RUN)/python -m pytest -n $(JOBS) --dist loadfile
 
 # The clone's folder may have any name, so the type checker sees the package through a link that has the right one.
 lint: setup
