@@ -20,7 +20,7 @@ from PIL import Image
 
 from .artifacts.common import ImageBox
 from .errors import PictureError
-from .picture_boxes import draw_boxes
+from .picture_boxes import draw_boxes, draw_grid
 from .picture_reading import decode_picture
 
 KEEP_LONG_SIDE = 4096
@@ -110,6 +110,12 @@ class ReferencePicture:
         model_size = long_side == MODEL_LONG_SIDE
         image = (self._model_image if model_size else _shrunk(self._image, long_side)).copy()
         draw_boxes(image, boxes)
+        return encode_for_model(image)
+
+    def with_grid(self) -> bytes:
+        """The picture as a model is sent it, with numbered lines every 100 of its 0-1000 coordinates."""
+        image = self._model_image.copy()
+        draw_grid(image)
         return encode_for_model(image)
 
 

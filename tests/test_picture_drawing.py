@@ -84,3 +84,16 @@ def test_boxes_outside_inside_out_and_empty_are_survived():
     ]
     assert opened(picture.with_boxes_drawn(boxes)).size == (160, 100)
     assert picture.with_boxes_drawn(boxes) == picture.with_boxes_drawn(boxes)
+
+
+def test_the_grid_lies_on_every_hundred_and_leaves_the_rest_alone():
+    buffer = io.BytesIO()
+    Image.new("RGB", (1000, 800), (128, 128, 128)).save(buffer, "PNG")
+    picture = read_picture(buffer.getvalue(), "grey.png")
+    with Image.open(io.BytesIO(picture.with_grid())) as opened:
+        drawn = np.asarray(opened.convert("RGB")).astype(int)
+    changed = np.abs(drawn - 128).max(axis=2) > 10
+    columns, rows = changed[60:740, 60:940].mean(axis=0), changed[60:740, 60:940].mean(axis=1)
+    assert all(columns[100 * n - 60] > 0.9 and columns[100 * n - 10] < 0.1 for n in range(1, 9))
+    assert all(rows[80 * n - 60] > 0.9 and rows[80 * n - 20] < 0.1 for n in range(1, 9))
+    assert (picture.pixels() == 128).all()

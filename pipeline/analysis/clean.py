@@ -8,7 +8,7 @@ import re
 from ..artifacts.analysis import ArchitectureItem, DetectedObject, Finding, SceneAnalysis, Zone
 from ..artifacts.common import ImageBox, ImagePoint
 from ..artifacts.replies import AnalysisReply, ArchitectureReply, BoxReply, ObjectReply, PointReply
-from ..errors import ReplyError
+from ..errors import PictureError, ReplyError
 
 MAX_OBJECTS = 300
 MAX_METRES = 100.0
@@ -101,6 +101,7 @@ def clean_object(reply: ObjectReply, taken: set[str], findings: list[Finding], s
         yaw=yaw,
         confidence=max(0.0, min(1.0, reply.confidence)),
         source=source,
+        front=reply.front.strip()[:80],
     )
 
 
@@ -206,8 +207,15 @@ def clean_analysis(reply: AnalysisReply, image_size: tuple[int, int]) -> SceneAn
     """The artifact that the reply means; `floor` is filled in by the calibration.
 
     Raises:
+        PictureError: the picture is not a room seen from above.
         ReplyError: no floor can be made of the answer, or it says that nothing is there.
     """
+    if reply.view == "other":
+        problem = reply.view_problem.strip().rstrip(".")[:160] or "the model sees no room from above in it"
+        raise PictureError(
+            f"This picture cannot be used: {problem}.",
+            "Choose a picture that shows one whole room from above: a photo, a render or a plan.",
+        )
     findings: list[Finding] = []
     floor = clean_polygon(reply.floor_polygon)
     if len(floor) < 3:

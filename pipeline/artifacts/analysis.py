@@ -53,6 +53,7 @@ class DetectedObject(Artifact):
         yaw: degrees counter-clockwise; 0 faces -Y (down in the picture).
         confidence: 0..1, the model's own or the analyser's.
         source: which request or pass found it.
+        front: by what its front was recognised, in the model's words ("headboard at the top").
     """
 
     id: str
@@ -69,6 +70,7 @@ class DetectedObject(Artifact):
     yaw: float = 0.0
     confidence: float = 1.0
     source: str = "analysis"
+    front: str = ""
 
 
 def _short(text: str) -> str:

@@ -90,13 +90,15 @@ class ObjectReply(Reply):
     size_m: SizeReply
     facing: Facing = "none"
     yaw_deg: float = 0.0
+    front: str = ""
     confidence: float = 1.0
 
 
 class AnalysisReply(Reply):
     """Answer to prompt 01_analysis."""
 
-    view: Literal["perspective", "orthographic", "plan"]
+    view: Literal["perspective", "orthographic", "plan", "other"]
+    view_problem: str = ""
     room_type: str = "room"
     room_width_m: float
     room_depth_m: float

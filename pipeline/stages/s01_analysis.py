@@ -138,7 +138,7 @@ def _first_request(view: View) -> Request:
         prompt="01_analysis",
         reply=AnalysisReply,
         values={"width": str(picture.width), "height": str(picture.height), "notes": "\n".join(notes)},
-        images=(Picture("reference", picture.for_model()),),
+        images=(Picture("reference", picture.for_model()), Picture("grid", picture.with_grid())),
         facts={"known_width_m": width} if width is not None else {},
     )
 

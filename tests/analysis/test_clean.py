@@ -10,7 +10,7 @@ from code_as_room.pipeline.analysis.clean import clean_analysis, facing_yaw
 from code_as_room.pipeline.analysis.merge import merge_second_look, to_whole_picture
 from code_as_room.pipeline.artifacts.common import ImageBox
 from code_as_room.pipeline.artifacts.replies import AnalysisReply, BoxReply, SecondLookReply
-from code_as_room.pipeline.errors import ReplyError
+from code_as_room.pipeline.errors import PictureError, ReplyError
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -110,6 +110,19 @@ def test_wild_numbers_never_reach_the_artifact(v: list[float], facing: str, plac
     assert 0 <= item.yaw <= 360
     if item.box is not None:
         assert 0 <= item.box.x_min < item.box.x_max <= 1000 and 0 <= item.box.y_min < item.box.y_max <= 1000
+
+
+def test_a_picture_from_eye_level_is_refused_with_the_models_reason_and_a_next_step() -> None:
+    said = reply(view="other", view_problem="The room is seen from eye level.", floor_polygon=[])
+    with pytest.raises(PictureError) as caught:
+        clean_analysis(said, (1000, 1000))
+    assert "seen from eye level" in caught.value.message
+    assert "from above" in caught.value.fix
+
+
+def test_by_what_the_front_was_recognised_is_kept() -> None:
+    found = clean_analysis(reply(thing("bed_1", front="headboard at the top")), (1000, 1000))
+    assert found.objects[0].front == "headboard at the top"
 
 
 def test_the_word_wins_where_yaw_contradicts_it() -> None:
