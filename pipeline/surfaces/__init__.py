@@ -1,0 +1,1 @@
+"""Where things can stand: surfaces found on built geometry, and free places on them. Pure numpy, no bpy."""

@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which surface of which thing carries an object, and where on it. (Paper, stage 7.)
+
+An object's box in the picture is lifted to the height of every surface in question; the surface that explains box and
+metres with the least moving wins. Frame of the room: metres, z up; yaw in degrees counter-clockwise.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from ..artifacts.analysis import Calibration, DetectedObject
+from ..artifacts.layout import ProxyLine
+from ..layout.initial import proxy_of
+from ..program.prelude.shape import Shape
+from .find import Surface, support_surfaces
+from .seat import Seat, find_seat, occupied
+
+REACH = 0.12
+"""How far in metres beyond its own half length a thing is moved to find a place, before other surfaces are tried."""
+MOVE_UNIT = 0.08
+HEIGHT_UNIT = 0.2
+HIDDEN_COST = 1.5
+SHRINK_COST = 6.0
+"""Costs of one `MOVE_UNIT` moved and one `HEIGHT_UNIT` off the stated height are 1; of a place that the picture cannot
+show, and of being made smaller by its whole size, in the same unit."""
+LYING = 0.02
+"""A thing stands on another when its base is within this many metres of the other's surface."""
+
+
+@dataclass(frozen=True)
+class Seated:
+    """Where an object stands: its proxy line, and how it came there.
+
+    Attributes:
+        moved: metres from where the picture shows it; scale: what its size was multiplied with.
+    """
+
+    proxy: ProxyLine
+    moved: float
+    scale: float
+    part: str
+
+
+@dataclass
+class Carriers:
+    """The things of a room with the surfaces found on them; what is seated takes its place from then on.
+
+    Attributes:
+        shapes: parts of each thing in its own frame, by id; a bare proxy has its box.
+    """
+
+    shapes: Mapping[str, Sequence[Shape]]
+    proxies: dict[str, ProxyLine] = field(default_factory=dict)
+    _surfaces: dict[str, list[Surface]] = field(default_factory=dict)
+
+    def surfaces(self, name: str) -> list[Surface]:
+        """The surfaces of one thing, highest first."""
+        if name not in self._surfaces:
+            self._surfaces[name] = support_surfaces(self.shapes.get(name, ()))
+        return self._surfaces[name]
+
+    def add(self, proxy: ProxyLine) -> None:
+        """A thing that stands where it stands; what it stands on is occupied there."""
+        self.proxies[proxy.id] = proxy
+        parent = self.proxies.get(proxy.parent or "")
+        if proxy.placement != "surface" or parent is None:
+            return
+        base = proxy.centre[2] - proxy.size[2] / 2 - base_of(parent)
+        x, y = to_local(parent, proxy.centre[:2])
+        for number, surface in enumerate(self.surfaces(parent.id)):
+            if abs(surface.level - base) <= max(LYING, 0.05):
+                cells = occupied(surface.grid, x, y, proxy.size[0], proxy.size[1], proxy.yaw - parent.yaw)
+                self._surfaces[parent.id][number] = surface.taken(cells)
+
+    def seat(self, item: DetectedObject, calibration: Calibration, parent: str) -> Seated | None:
+        """The best place for an object on one thing, or None when it cannot stand on it. Nothing is occupied yet."""
+        carrier = self.proxies.get(parent)
+        if carrier is None:
+            return None
+        offers = [
+            offer
+            for surface in self.surfaces(parent)
+            if surface.area >= 0.3 * item.size[0] * item.size[1]
+            for offer in self._offers(item, calibration, carrier, surface)
+        ]
+        return min(offers, key=lambda o: o[0])[1] if offers else None
+
+    def _offers(
+        self, item: DetectedObject, calibration: Calibration, carrier: ProxyLine, surface: Surface
+    ) -> list[tuple[float, Seated]]:
+        level = base_of(carrier) + surface.level
+        lifted, _ = proxy_of(item, calibration, level)
+        wanted = to_local(carrier, lifted.centre[:2])
+        turn = lifted.yaw - carrier.yaw
+        near = REACH + max(lifted.size[:2]) / 2
+        seat = find_seat(surface, wanted, lifted.size, turn, near) or find_seat(surface, wanted, lifted.size, turn)
+        if seat is None:
+            return []
+        stated = item.centre[2] - item.size[2] / 2
+        column, row = surface.grid.index(seat.x, seat.y)
+        shape = surface.grid.shape
+        inside = 0 <= column < shape[0] and 0 <= row < shape[1]
+        hidden = not inside or math.isfinite(float(surface.clearance[column, row]))
+        cost = (
+            seat.moved / MOVE_UNIT
+            + abs(base_of(carrier) + seat.z - stated) / HEIGHT_UNIT
+            + HIDDEN_COST * hidden
+            + SHRINK_COST * (1 - seat.scale)
+        )
+        return [(cost, Seated(seated_proxy(lifted, carrier, seat), seat.moved, seat.scale, surface.part))]
+
+
+def base_of(proxy: ProxyLine) -> float:
+    """Height of a proxy's underside."""
+    return proxy.centre[2] - proxy.size[2] / 2
+
+
+def to_local(carrier: ProxyLine, point: Sequence[float]) -> tuple[float, float]:
+    """A point of the room in the frame of a thing (origin at the middle of its base)."""
+    angle = math.radians(-carrier.yaw)
+    dx, dy = point[0] - carrier.centre[0], point[1] - carrier.centre[1]
+    return dx * math.cos(angle) - dy * math.sin(angle), dx * math.sin(angle) + dy * math.cos(angle)
+
+
+def to_room(carrier: ProxyLine, point: Sequence[float]) -> tuple[float, float]:
+    """The inverse of `to_local`."""
+    angle = math.radians(carrier.yaw)
+    x = carrier.centre[0] + point[0] * math.cos(angle) - point[1] * math.sin(angle)
+    return x, carrier.centre[1] + point[0] * math.sin(angle) + point[1] * math.cos(angle)
+
+
+def seated_proxy(lifted: ProxyLine, carrier: ProxyLine, seat: Seat) -> ProxyLine:
+    """The object's proxy line on its seat."""
+    x, y = to_room(carrier, (seat.x, seat.y))
+    size = (lifted.size[0] * seat.scale, lifted.size[1] * seat.scale, lifted.size[2] * seat.scale)
+    z = base_of(carrier) + seat.z
+    update = {"centre": (x, y, z + size[2] / 2), "size": size, "parent": carrier.id, "placement": "surface"}
+    return lifted.model_copy(update=update)
+
+
+def carriers_under(point: Sequence[float], proxies: Sequence[ProxyLine], reach: float = 0.02) -> list[ProxyLine]:
+    """The things whose outline holds a point, smallest first; flat things such as rugs come last."""
+    found = []
+    for proxy in proxies:
+        x, y = to_local(proxy, point)
+        if abs(x) <= proxy.size[0] / 2 + reach and abs(y) <= proxy.size[1] / 2 + reach and proxy.placement != "ceiling":
+            found.append(proxy)
+    return sorted(found, key=lambda p: (p.size[2] < 0.06, p.size[0] * p.size[1]))

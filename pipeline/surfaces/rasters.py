@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Meshes seen from above as samples: for every cell of a grid, the heights at which a mesh crosses it.
+
+Frame: that of the shapes (a proxy's local frame), metres, z up.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..program.prelude.shape import Shape
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+_MOST_PAIRS = 4_000_000
+"""Triangle and cell pairs that are looked at in one go; larger meshes are rasterised in pieces."""
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Square cells over a rectangle: `origin` is the low corner, `shape` is (columns along x, rows along y)."""
+
+    origin: tuple[float, float]
+    cell: float
+    shape: tuple[int, int]
+
+    def index(self, x: float, y: float) -> tuple[int, int]:
+        """The cell that holds a point; may lie outside the grid."""
+        return int(np.floor((x - self.origin[0]) / self.cell)), int(np.floor((y - self.origin[1]) / self.cell))
+
+    def centre(self, column: float, row: float) -> tuple[float, float]:
+        """The middle of a cell."""
+        return self.origin[0] + (column + 0.5) * self.cell, self.origin[1] + (row + 0.5) * self.cell
+
+
+@dataclass(frozen=True)
+class Samples:
+    """Crossings of vertical lines through the cells' middles with a mesh, sorted by cell and then by height.
+
+    Attributes:
+        cells: flat index (column * rows + row) of each crossing; heights in metres.
+        up: whether the surface there is nearly level and faces upward.
+        owner: index of the shape that was crossed.
+    """
+
+    grid: Grid
+    cells: Ints
+    heights: Floats
+    up: NDArray[np.bool_]
+    owner: Ints
+
+
+def triangles(shapes: Sequence[Shape]) -> tuple[Floats, Ints]:
+    """All faces as triangles (T, 3, 3), and the index of the shape that each belongs to (T,)."""
+    corners: list[Floats] = []
+    owners: list[Ints] = []
+    for number, shape in enumerate(shapes):
+        by_length: dict[int, list[tuple[int, ...]]] = {}
+        for face in shape.faces:
+            by_length.setdefault(len(face), []).append(face)
+        for length, faces in by_length.items():
+            table = np.array(faces, dtype=np.int64)
+            for k in range(1, length - 1):
+                corners.append(shape.vertices[table[:, (0, k, k + 1)]])
+                owners.append(np.full(len(table), number, dtype=np.int64))
+    if not corners:
+        return np.zeros((0, 3, 3)), np.zeros(0, dtype=np.int64)
+    return np.concatenate(corners), np.concatenate(owners)
+
+
+def grid_over(points: Floats, cell: float) -> Grid:
+    """The grid that covers all points (N, 2 or more)."""
+    low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
+    count = np.maximum(1, np.ceil((high - low) / cell - 1e-9).astype(int))
+    # Centred, so that a thing narrower than whole cells is not cut on one side only.
+    start = (low + high) / 2 - count * cell / 2
+    return Grid((float(start[0]), float(start[1])), cell, (int(count[0]), int(count[1])))
+
+
+def sample(shapes: Sequence[Shape], cell: float, level: float = 0.9) -> Samples | None:
+    """Rasterise shapes from above; None where there is nothing.
+
+    Args:
+        cell: side of a cell in metres.
+        level: the least z of a unit normal that counts as level and facing upward.
+    """
+    corners, owner = triangles(shapes)
+    if not len(corners):
+        return None
+    grid = grid_over(corners.reshape(-1, 3), cell)
+    cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    length = np.linalg.norm(cross, axis=1)
+    # Upright triangles have no extent from above; they do not take room beyond their edges' neighbours.
+    seen = np.abs(cross[:, 2]) > 1e-12
+    corners, owner, cross, length = corners[seen], owner[seen], cross[seen], length[seen]
+    up = cross[:, 2] > level * length
+    low = np.floor((corners[:, :, :2].min(axis=1) - grid.origin) / cell - 0.5).astype(np.int64)
+    high = np.ceil((corners[:, :, :2].max(axis=1) - grid.origin) / cell - 0.5).astype(np.int64)
+    low, high = np.maximum(low, 0), np.minimum(high, np.array(grid.shape) - 1)
+    count = np.maximum(0, high - low + 1)
+    found = [_crossings(corners, low, count, grid, part) for part in _parts(count.prod(axis=1))]
+    triangle = np.concatenate([f[0] for f in found])
+    cells = np.concatenate([f[1] for f in found])
+    heights = np.concatenate([f[2] for f in found])
+    order = np.lexsort((heights, cells))
+    triangle = triangle[order]
+    return Samples(grid, cells[order], heights[order], up[triangle], owner[triangle])
+
+
+def _parts(pairs: Ints) -> list[slice]:
+    """Slices of the triangles, each with about `_MOST_PAIRS` pairs."""
+    ends = np.cumsum(pairs)
+    cuts: Ints | list[int] = np.searchsorted(ends, np.arange(_MOST_PAIRS, int(ends[-1]) + _MOST_PAIRS, _MOST_PAIRS)) if len(ends) else []
+    edges = [0, *(int(c) + 1 for c in cuts)]
+    return [slice(a, min(b, len(pairs))) for a, b in zip(edges[:-1], edges[1:], strict=True) if a < len(pairs)]
+
+
+def _crossings(corners: Floats, low: Ints, count: Ints, grid: Grid, part: slice) -> tuple[Ints, Ints, Floats]:
+    """Triangle index, cell and height of every crossing of some triangles with the cells' middles."""
+    number = np.arange(len(corners))[part]
+    pairs = count[part].prod(axis=1)
+    triangle = np.repeat(number, pairs)
+    step = np.arange(len(triangle)) - np.repeat(np.cumsum(pairs) - pairs, pairs)
+    rows = np.maximum(1, count[triangle, 1])
+    column, row = low[triangle, 0] + step // rows, low[triangle, 1] + step % rows
+    x = grid.origin[0] + (column + 0.5) * grid.cell
+    y = grid.origin[1] + (row + 0.5) * grid.cell
+    a, b, c = (corners[triangle, k] for k in range(3))
+    area = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
+    v = ((x - a[:, 0]) * (c[:, 1] - a[:, 1]) - (y - a[:, 1]) * (c[:, 0] - a[:, 0])) / area
+    w = ((b[:, 0] - a[:, 0]) * (y - a[:, 1]) - (b[:, 1] - a[:, 1]) * (x - a[:, 0])) / area
+    inside = (v >= -1e-9) & (w >= -1e-9) & (v + w <= 1 + 1e-9)
+    heights = a[:, 2] + v * (b[:, 2] - a[:, 2]) + w * (c[:, 2] - a[:, 2])
+    cells = column * grid.shape[1] + row
+    return triangle[inside], cells[inside], heights[inside]

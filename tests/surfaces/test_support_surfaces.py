@@ -1,0 +1,115 @@
+"""Surfaces found on shapes made by the language's own constructors, and seats on them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from code_as_room.pipeline.program.evaluate import evaluate_object
+from code_as_room.pipeline.surfaces.find import Surface, support_surfaces
+from code_as_room.pipeline.surfaces.seat import Seat, find_seat, occupied
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+
+def surfaces(body: str) -> list[Surface]:
+    text = "def thing():\n    return [" + body + "]\n"
+    return support_surfaces(evaluate_object(text, "thing"))
+
+
+def block(name: str, size: tuple[float, float, float], x: float = 0.0, y: float = 0.0, z: float = 0.0) -> str:
+    """A box whose base is at z."""
+    return f'part("{name}", box({size}, at=({x}, {y}, {z + size[2] / 2})), material="wood")'
+
+
+TABLE = ", ".join(
+    [
+        block("top", (1.2, 0.8, 0.04), z=0.71),
+        block("leg", (0.06, 0.06, 0.71), -0.5, -0.3),
+        block("leg", (0.06, 0.06, 0.71), 0.5, 0.3),
+    ]
+)
+SHELF = ", ".join(block("board", (0.8, 0.3, 0.02), z=z) for z in (0.1, 0.5, 0.9))
+
+
+def test_a_table_has_one_surface_of_its_size_at_its_height() -> None:
+    [top] = surfaces(TABLE)
+    assert top.level == pytest.approx(0.75, abs=1e-6)
+    assert top.area == pytest.approx(1.2 * 0.8, rel=0.03)
+    assert top.part == "top"
+    assert top.open_share == 1.0
+
+
+def test_every_board_of_a_shelf_is_found_with_the_room_above_it() -> None:
+    found = surfaces(SHELF)
+    assert [s.level for s in found] == pytest.approx([0.92, 0.52, 0.12], abs=1e-6)
+    assert found[0].open_share == 1.0
+    assert found[1].open_share == 0.0
+    assert np.nanmax(found[1].clearance) == pytest.approx(0.38, abs=1e-6)
+
+
+def test_what_lies_inside_or_right_under_another_part_carries_nothing() -> None:
+    found = surfaces(f"{block('mattress', (2.0, 1.6, 0.4))}, {block('duvet', (2.0, 1.0, 0.1), z=0.38)}")
+    assert [s.part for s in found] == ["duvet", "mattress"]
+    assert found[1].area == pytest.approx(2.0 * 0.6, rel=0.05)
+
+
+def test_a_slope_and_an_underside_are_no_surfaces() -> None:
+    assert surfaces('part("roof", turn(box((1.0, 1.0, 0.02)), 40, axis="x"), material="wood")') == []
+    assert surfaces('part("rod", cylinder(0.01, 1.0), material="metal")') == []
+
+
+def test_a_thing_stands_where_it_is_wanted_when_that_is_free() -> None:
+    [top] = surfaces(TABLE)
+    seat = find_seat(top, (0.1234, -0.0567), (0.2, 0.1, 0.1), 30.0)
+    assert seat is not None
+    assert (seat.x, seat.y, seat.moved, seat.scale) == (0.1234, -0.0567, 0.0, 1.0)
+    assert seat.z == pytest.approx(0.75, abs=1e-6)
+
+
+def test_what_is_wanted_beyond_the_edge_comes_to_the_nearest_place_inside() -> None:
+    [top] = surfaces(TABLE)
+    seat = find_seat(top, (0.8, 0.0), (0.2, 0.2, 0.1), 0.0)
+    assert seat is not None
+    assert 0.45 < seat.x < 0.56
+    assert abs(seat.y) < 0.03
+    assert find_seat(top, (0.8, 0.0), (0.2, 0.2, 0.1), 0.0, reach=0.1) is None
+
+
+def test_too_large_a_thing_is_made_smaller_within_reason_or_refused() -> None:
+    [top] = surfaces(TABLE)
+    smaller = find_seat(top, (0.0, 0.0), (1.5, 0.7, 0.3), 0.0)
+    assert smaller is not None
+    assert smaller.scale == 0.85
+    assert find_seat(top, (0.0, 0.0), (3.0, 2.0, 0.3), 0.0) is None
+
+
+def test_a_tall_thing_does_not_go_under_a_low_board() -> None:
+    found = surfaces(SHELF)
+    assert find_seat(found[1], (0.0, 0.0), (0.1, 0.1, 0.5), 0.0, reach=1.0) is not None  # made smaller
+    assert find_seat(found[1], (0.0, 0.0), (0.1, 0.1, 0.6), 0.0) is None
+
+
+spots = st.tuples(
+    st.floats(-0.6, 0.6), st.floats(-0.4, 0.4), st.floats(0.05, 0.25), st.floats(0.05, 0.25), st.floats(0, 360)
+)
+
+
+@settings(deadline=None, max_examples=40)
+@given(st.lists(spots, min_size=1, max_size=10))
+def test_seats_stay_on_the_surface_and_off_each_other(things: list[tuple[float, float, float, float, float]]) -> None:
+    [top] = surfaces(TABLE)
+    taken: list[tuple[Seat, float, float, float]] = []
+    for x, y, width, depth, turn in things:
+        seat = find_seat(top, (x, y), (width, depth, 0.1), turn)
+        if seat is None:
+            continue
+        assert abs(seat.x) <= 0.6 and abs(seat.y) <= 0.4
+        assert seat.moved == pytest.approx(math.hypot(seat.x - x, seat.y - y))
+        own = occupied(top.grid, seat.x, seat.y, width * seat.scale, depth * seat.scale, turn)
+        for _, _, _, other in [(None, None, None, t[0].cells) for t in taken]:
+            assert (own & other).sum() <= 0.25 * min(own.sum(), other.sum()) + 4
+        taken.append((seat, width, depth, turn))
+        top = top.taken(seat.cells)
+    assert taken
