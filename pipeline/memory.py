@@ -23,6 +23,7 @@ from .artifacts.corrections import Corrections, Found, Rescaled
 from .artifacts.graph import MinorObjects, SceneGraph
 from .artifacts.hand import HandEdits
 from .artifacts.layout import LayoutProgram
+from .artifacts.objects import Descriptions, Geometry, OwnModelling, RoomStyle
 from .errors import MemoryFormatError
 
 FORMAT = "code-as-room/memory/1"
@@ -38,6 +39,10 @@ KINDS: dict[str, type[Artifact]] = {
         Corrections,
         Found,
         Rescaled,
+        Descriptions,
+        RoomStyle,
+        Geometry,
+        OwnModelling,
     )
 }
 _CHUNK = 160
@@ -47,7 +52,8 @@ A = TypeVar("A", bound=BaseModel)
 
 class EntryMeta(Artifact):
     """How an entry came about. `client` is what was asked, `model` what answered; `inputs` maps what was read to its
-    hash; `cost` is in US dollars."""
+    hash; `cost` is in US dollars. Of an answer: bytes of prompt text and calls in all tries, and which of the stage's
+    rounds it was asked in, from 1; what is asked side by side shares a round."""
 
     time: str
     client: str = ""
@@ -57,6 +63,9 @@ class EntryMeta(Artifact):
     cost: float | None = None
     seconds: float = 0.0
     prompt_hash: str = ""
+    prompt_bytes: int = 0
+    tries: int = 1
+    round: int = 0
     inputs: dict[str, str] = {}
     notes: list[str] = []
 
