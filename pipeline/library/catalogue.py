@@ -58,9 +58,10 @@ def definitions() -> dict[str, Definition]:
     found: dict[str, Definition] = {}
     for path in sorted(FOLDER.glob(f"*{SUFFIX}")):
         text = path.read_text(encoding="utf-8")
+        lines = text.split("\n")
         for node in ast.parse(text).body:
             if isinstance(node, ast.FunctionDef):
-                source = ast.get_source_segment(text, node) or ""
+                source = "\n".join(lines[node.lineno - 1 : node.end_lineno])
                 bound = {n.id for n in ast.walk(node) if isinstance(n, ast.Name) and not isinstance(n.ctx, ast.Load)}
                 bound |= {a.arg for a in ast.walk(node) if isinstance(a, ast.arg)}
                 # A def's own names may be spelt as other defs are.

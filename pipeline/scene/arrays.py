@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from ..program.prelude.shape import Shape
+from ..program.prelude.unwrap import corner_uvs, face_normals
 
 
 @dataclass(frozen=True)
@@ -21,7 +23,8 @@ class MeshArrays:
         edges: loose edges, (E, 2).
         slots, smooth, parts: material slot, shading and index into `part_names` of each face.
         roles: the material roles, slot by slot.
-        uvs: (corners, 2) in metres, None when no shape brings any.
+        uvs: (corners, 2) in metres.
+        sharp: edges that stay sharp between faces that are shaded smooth, (E, 2), the lower vertex first.
     """
 
     points: Any
@@ -34,6 +37,7 @@ class MeshArrays:
     roles: tuple[str, ...]
     part_names: tuple[str, ...]
     uvs: Any
+    sharp: Any
 
 
 def mesh_arrays(shapes: list[Shape]) -> MeshArrays:
@@ -42,35 +46,47 @@ def mesh_arrays(shapes: list[Shape]) -> MeshArrays:
     points = np.concatenate([s.vertices for s in shapes]) if shapes else np.zeros((0, 3))
     roles = tuple(dict.fromkeys(shape.material for shape in shapes if shape.faces))
     names = tuple(dict.fromkeys(shape.part for shape in shapes))
-    counts = [len(s.faces) for s in shapes]
-    lengths = [len(face) for s in shapes for face in s.faces]
-    corners = [v + int(start) for s, start in zip(shapes, offsets, strict=False) for face in s.faces for v in face]
+    flat = [s.corners for s in shapes]
+    counts = [len(lengths) for _, lengths in flat]
+    lengths = np.concatenate([np.zeros(0, dtype=np.int64), *(lengths for _, lengths in flat)])
+    corners = [found + start for (found, _), start in zip(flat, offsets, strict=False)]
     edges = [
         (a + int(start), b + int(start))
         for s, start in zip(shapes, offsets, strict=False)
         for a, b in s.extra.get("edges", ())
     ]
+    sharp = [sharp_edges(s) + start for s, start in zip(shapes, offsets, strict=False)]
     slots = [roles.index(s.material) if s.faces else 0 for s in shapes]
     return MeshArrays(
         points=points.astype(np.float32),
-        corners=np.array(corners, dtype=np.int32),
-        starts=np.cumsum([0, *lengths])[:-1].astype(np.int32),
+        corners=np.concatenate([np.zeros(0, dtype=np.int64), *corners]).astype(np.int32),
+        starts=(np.cumsum(lengths) - lengths).astype(np.int32),
         edges=np.array(edges, dtype=np.int32).reshape(-1, 2),
         slots=np.repeat(slots, counts).astype(np.int32),
         smooth=np.repeat([bool(s.smooth) for s in shapes], counts).astype(bool),
         parts=np.repeat([names.index(s.part) for s in shapes], counts).astype(np.int32),
         roles=roles,
         part_names=names,
-        uvs=_uvs(shapes),
+        uvs=np.concatenate([np.zeros((0, 2)), *map(corner_uvs, shapes)]).astype(np.float32),
+        sharp=np.concatenate([np.zeros((0, 2), dtype=np.int64), *sharp]).astype(np.int32),
     )
 
 
-def _uvs(shapes: list[Shape]) -> Any:
-    """UV coordinates of all corners when any shape brings them; the others get zeros."""
-    if all(shape.uvs is None for shape in shapes):
-        return None
-    rows = []
-    for shape in shapes:
-        corners = sum(len(face) for face in shape.faces)
-        rows.append(np.zeros((corners, 2)) if shape.uvs is None else np.asarray(shape.uvs).reshape(corners, 2))
-    return np.concatenate(rows).astype(np.float32)
+def sharp_edges(shape: Shape) -> Any:
+    """The edges of a shape shaded smooth whose faces meet at more than its crease angle, (E, 2)."""
+    corners, lengths = shape.corners
+    if not shape.smooth or shape.crease >= 179.9 or not len(corners):
+        return np.zeros((0, 2), dtype=np.int64)
+    starts = np.cumsum(lengths) - lengths
+    ahead = np.arange(1, len(corners) + 1)
+    ahead[starts + lengths - 1] = starts
+    low, high = np.minimum(corners, corners[ahead]), np.maximum(corners, corners[ahead])
+    keys = low * len(shape.vertices) + high
+    order = np.argsort(keys, kind="stable")
+    same = keys[order[:-1]] == keys[order[1:]]
+    face = np.repeat(np.arange(len(lengths)), lengths)
+    normals = face_normals(shape)
+    one, other = order[:-1][same], order[1:][same]
+    turned = np.einsum("ij,ij->i", normals[face[one]], normals[face[other]])
+    found = one[turned < math.cos(math.radians(shape.crease))]
+    return np.stack([low[found], high[found]], axis=1)

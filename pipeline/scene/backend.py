@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,11 +15,13 @@ from ..artifacts.layout import LayoutEdit
 from ..artifacts.scene import SceneDocument
 from ..errors import SceneError
 from ..program.assemble import room_part
+from ..program.prelude.shape import Shape
 from .adopt import adopt
 from .capture import capture, eye_view
 from .document import scene_document
 from .holding import forget_aside
 from .plan import BuildPlan, line_ids, plan_build
+from .portrait import portrait
 from .readback import read_back
 from .realise import lacking, realise_plan
 from .save import save_copy
@@ -80,6 +82,14 @@ class BlenderScene:
         """As `SceneBackend.render_view`."""
         picture = eye_view(self.scene, long_side)
         return self._drawn(picture.png, picture.method)
+
+    def portrait(self, shapes: Sequence[Shape], family: str, long_side: int) -> bytes:
+        """As `Studio.portrait`."""
+        try:
+            return portrait(shapes, family, long_side)
+        except SceneError as error:
+            self._tell(f"The model could not be shown its objects: {error.message}")
+            return b""
 
     def read_back(self) -> list[LayoutEdit]:
         """As `SceneBackend.read_back`. What was copied, added or renamed gets its id on the object."""

@@ -71,6 +71,11 @@ def eye_view(scene: Any, long_side: int = 1280) -> Picture:
         return _picture(*_draw(stage, camera, fine=True))
 
 
+def draw_stage(stage: Any, camera: CameraModel) -> tuple[Image.Image | bytes, str]:
+    """What a studio's stage shows, as an image or as encoded bytes, and what drew it. Raises SceneError."""
+    return _draw(stage, camera, fine=False)
+
+
 def _room(scene: Any) -> Any:
     room = find_room_collection(scene)
     if room is None or not visible_objects(room):

@@ -7,14 +7,18 @@ from typing import Any
 
 import bpy
 
-from ..program.prelude.palette import FAMILY_COLOURS, ROLE_COLOURS, role_colour
+from ..program.prelude.palette import FAMILY_COLOURS, ROLE_COLOURS, role_colour, split_role
 from .nodes import ensure_node_tree
 from .tags import COLOUR
+
+_ROUGHNESS = {"glass": 0.05, "mirror": 0.05, "water": 0.05, "screen": 0.2, "metal": 0.35, "steel": 0.3, "brass": 0.3,
+              "ceramic": 0.25, "marble": 0.3, "leather": 0.5}  # fmt: skip
 
 
 def ensure_material(family: str, role: str) -> Any:
     """The material of a role on an object of this family. An existing one is returned as the artist left it."""
-    named_role = role in ROLE_COLOURS
+    own, code = split_role(role)
+    named_role = role in ROLE_COLOURS or bool(code)
     known = family if family in FAMILY_COLOURS else "other"
     key = role if named_role else f"{known}/{'front' if role == 'front' else ''}"
     for material in bpy.data.materials:
@@ -23,7 +27,7 @@ def ensure_material(family: str, role: str) -> Any:
     title = role if named_role else f"{known} front" if role == "front" else known
     material = bpy.data.materials.new(f"Room {title}")
     material[COLOUR] = key
-    _paint(material, role_colour(role, family), 0.05 if role == "glass" else 0.65)
+    _paint(material, role_colour(role, family), _ROUGHNESS.get(own, 0.65))
     return material
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from ..program.assemble import assemble, prelude_text
 from ..program.evaluate import evaluate
+from ..program.limits import FINISHED_ROOM_LIMITS
 from ..program.lines import parse_layout
 from .targets import Plan, plan_record
 from .texts import check_lines
@@ -37,7 +38,7 @@ def plan_build(text: str, meshes: bool = True) -> BuildPlan:
         ProgramError: the text is outside the room language.
         SceneError: a line of it is too long for Blender.
     """
-    room = plan_record(evaluate(text))
+    room = plan_record(evaluate(text, FINISHED_ROOM_LIMITS))
     full = assemble(text)
     line_ids(text)  # the next reading back asks for them
     check_lines("room.py", full)

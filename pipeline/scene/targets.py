@@ -168,7 +168,9 @@ def shapes_digest(shapes: list[Shape], family: str) -> str:
     digest = hashlib.sha1(family.encode(), usedforsecurity=False)
     for shape in shapes:
         digest.update(np.ascontiguousarray(shape.vertices, dtype=np.float64).tobytes())
-        digest.update(repr((shape.faces, shape.part, shape.material, shape.smooth, shape.extra)).encode())
-        if shape.uvs is not None:
-            digest.update(np.ascontiguousarray(shape.uvs, dtype=np.float64).tobytes())
+        looks = (shape.smooth, shape.crease, shape.rings, shape.loop, shape.flipped, shape.extra)
+        digest.update(repr((shape.part, shape.material, looks)).encode())
+        for numbers in (*shape.corners, shape.uvs, shape.axes):
+            if numbers is not None:
+                digest.update(np.ascontiguousarray(numbers).tobytes())
     return digest.hexdigest()[:20]

@@ -20,6 +20,9 @@ from ..program.differences import loses_code
 PROGRAM = "room.py"
 MEMORY = "Code-as-Room Memory"
 _WRITTEN = "code_as_room_written"  # on a text: digest of what we wrote last
+_OURS = (
+    "code_as_room_ours"  # on a text: digest of what a build made of it last, with nothing of the artist's in between
+)
 _LONGEST_LINE = 20_000  # characters; 100 kB on one line take 0.2 s, 2 MB take minutes
 
 
@@ -64,11 +67,11 @@ def write_text(room: Any, name: str, text: str) -> str:
     if current and block.get(_WRITTEN) != _digest(current) and _would_be_lost(name, current):
         kept = _keep_aside(name, current)
         notice = f'Your edits of "{block.name}" could not be taken over; they were kept in "{kept.name}".'
-    elif name == PROGRAM and loses_code(current, text):
+    elif name == PROGRAM and block.get(_OURS) != _digest(current) and loses_code(current, text):
         kept = _keep_aside(name, current)
         notice = f'The program was written anew without your functions; the former one was kept in "{kept.name}".'
     block.from_string(text)
-    block[_WRITTEN] = _digest(block.as_string())
+    block[_WRITTEN] = block[_OURS] = _digest(block.as_string())
     return notice
 
 

@@ -11,6 +11,7 @@ from ..errors import ProgramError
 from ..program.assemble import assemble, split_room
 from ..program.differences import differences
 from ..program.evaluate import evaluate
+from ..program.limits import FINISHED_ROOM_LIMITS
 from ..program.lines import parse_layout
 from .read_lines import built_layout
 from .tags import ID, LINE, NAME, PART, WAS
@@ -25,7 +26,7 @@ def text_edits(room: Any) -> list[LayoutEdit]:
     """
     above, text = split_room(read_text(room, PROGRAM))
     try:
-        evaluate(text)
+        evaluate(text, FINISHED_ROOM_LIMITS)
         after = parse_layout(text)
     except ProgramError as error:
         error.line += above if error.line else 0

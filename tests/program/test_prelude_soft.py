@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from code_as_room.pipeline.errors import ProgramError
 from code_as_room.pipeline.program.evaluate import evaluate
-from code_as_room.pipeline.program.prelude import cloth, growing, profiles, reshape, sheets, soft, solids
+from code_as_room.pipeline.program.prelude import cloth, growing, profiles, reshape, sheets, soft, solids, weaving
 from code_as_room.pipeline.program.prelude.rings import signed_volume
 from code_as_room.pipeline.program.prelude.shape import Shape
 from hypothesis import given, settings
@@ -82,7 +82,7 @@ def test_a_cloth_hangs_as_far_as_it_is_told() -> None:
 
 def test_a_rug_lies_on_the_floor_in_its_size() -> None:
     for form in ("box", "round", "hide"):
-        shape = cloth.rug((2.0, 1.4, 0.02), shape=form, fringe=0.05)
+        shape = weaving.rug((2.0, 1.4, 0.02), shape=form, fringe=0.05)
         assert shape.vertices[:, 2].min() >= 0 and np.allclose(size_of(shape)[:2], (2.0, 1.4), atol=0.02)
         assert open_edges(shape) == 0
 

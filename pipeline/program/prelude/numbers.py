@@ -12,7 +12,7 @@ MASK = (1 << 64) - 1
 
 
 def lerp(a: Any, b: Any, t: Any) -> Any:
-    """From a (t = 0) to b (t = 1): numbers, or two tuples of the same length. t is not clamped."""
+    """From a (t = 0) to b (t = 1): numbers or tuples. t is not clamped."""
     if isinstance(a, (tuple, list)):
         if not isinstance(b, (tuple, list)) or len(a) != len(b):
             raise fail("lerp", "a and b must both be numbers or have the same length")
@@ -21,12 +21,12 @@ def lerp(a: Any, b: Any, t: Any) -> Any:
 
 
 def clamp(value: Any, low: Any = 0.0, high: Any = 1.0) -> Any:
-    """The value, but not below low and not above high."""
+    """Kept within low and high."""
     return low if value < low else high if value > high else value
 
 
 def smoothstep(low: Any, high: Any, value: Any) -> float:
-    """0 at or below low, 1 at or above high, a smooth curve between them."""
+    """From 0 at low to 1 at high, smoothly."""
     if low == high:
         return 0.0 if value < low else 1.0
     t = (value - low) / (high - low)
@@ -64,7 +64,7 @@ def seed_bits(seed: Any) -> int:
 
 
 def rand(seed: Any, low: float = 0.0, high: float = 1.0) -> float:
-    """A number between low and high that looks random but is always the same for the same seed."""
+    """Looks random, but is the same for the same seed (number, text or tuple)."""
     if not (is_number(low) and is_number(high)):
         raise fail("rand", "low and high must be finite numbers")
     return low + (high - low) * ((seed_bits(seed) >> 11) / (1 << 53))
@@ -88,9 +88,9 @@ DIRECTIONS_3 = tuple((EDGES + EDGES[:4]) * 16)
 
 
 def noise(x: Any, y: Any = 0.0, z: Any = None, seed: Any = 0) -> float:
-    """Smooth gradient noise of one, two or three coordinates, about -1..1, features about one unit wide.
+    """Smooth noise, about -1..1, features one unit wide.
 
-    0 where all coordinates are whole numbers. Source: K. Perlin, "Improving Noise", SIGGRAPH 2002.
+    Gradient noise, 0 where all coordinates are whole numbers. Source: K. Perlin, "Improving Noise", SIGGRAPH 2002.
     """
     if seed:
         shift = seed_bits(seed)
@@ -135,7 +135,7 @@ def noise_3(u: float, v: float, s: float, t: float, left: int, right: int, j: in
 
 
 def append(items: Any, value: Any) -> None:
-    """Add a value to the end of a list."""
+    """Add to the end of a list."""
     if not isinstance(items, list):
         raise fail("append", "the first argument must be a list")
     items.append(value)

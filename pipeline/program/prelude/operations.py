@@ -12,8 +12,9 @@ import numpy as np
 
 from .budget import spend_vertices
 from .checks import choice, fail, flag, is_number, number, point, text, whole
-from .shape import Floats, Shape, flat_shapes
+from .shape import Floats, Shape, flat_shapes, remeshed
 from .solids import ORIGIN
+from .unwrap import corner_uvs, refitted
 
 Shapes = Shape | list[Shape]
 AXIS_NUMBER = {"x": 0, "y": 1, "z": 2}
@@ -35,15 +36,18 @@ def moved(where: str, shape: Shape, vertices: Floats, flip: bool = False) -> Sha
     if uvs is not None:
         ends = np.cumsum([len(face) for face in shape.faces])[:-1]
         uvs = np.concatenate([corner[::-1] for corner in np.split(uvs, ends)])
-    return replace(shape, vertices=vertices, faces=faces, uvs=uvs)
+    return replace(shape, vertices=vertices, faces=faces, uvs=uvs, flipped=not shape.flipped)
 
 
-def copied(where: str, shapes: Any, change: Callable[[Floats], Floats], flip: bool = False) -> Shapes:
-    """Shapes whose vertices are changed; every result counts as new vertices."""
+def copied(
+    where: str, shapes: Any, change: Callable[[Floats], Floats], flip: bool = False, axes: Floats | None = None
+) -> Shapes:
+    """Shapes whose vertices are changed; every result counts as new vertices. `axes` turns their own axes along."""
 
     def one(shape: Shape) -> Shape:
         spend_vertices(shape.vertex_count)
-        return moved(where, shape, change(shape.vertices), flip)
+        made = moved(where, shape, change(shape.vertices), flip)
+        return made if axes is None else replace(made, axes=axes if shape.axes is None else axes @ shape.axes)
 
     return each(where, shapes, one)
 
@@ -55,7 +59,7 @@ def move(shapes: Any, by: Any) -> Shapes:
 
 
 def turn(shapes: Any, angle: Any, axis: Any = "z", about: Any = ORIGIN) -> Shapes:
-    """Turn by degrees round the axis "x", "y" or "z" through the point `about`, counter-clockwise seen against it."""
+    """Degrees round the axis through `about`, counter-clockwise seen against it."""
     radians = math.radians(number("turn", "angle", angle, -1e6, 1e6))
     first = (AXIS_NUMBER[choice("turn", "axis", axis, ("x", "y", "z"))] + 1) % 3
     second = (first + 1) % 3
@@ -64,20 +68,28 @@ def turn(shapes: Any, angle: Any, axis: Any = "z", about: Any = ORIGIN) -> Shape
     matrix[second, first] = math.sin(radians)
     matrix[first, second] = -math.sin(radians)
     centre = np.array(point("turn", "about", about))
-    return copied("turn", shapes, lambda vertices: (vertices - centre) @ matrix.T + centre)
+    return copied("turn", shapes, lambda vertices: (vertices - centre) @ matrix.T + centre, axes=matrix)
 
 
 def scale(shapes: Any, factor: Any, about: Any = ORIGIN) -> Shapes:
-    """Scale by a number or by (x, y, z) from the point `about`; factors must not be 0."""
+    """By a number or (x, y, z), from the point `about`."""
     factors = np.array(point("scale", "factor", (factor, factor, factor) if is_number(factor) else factor))
     if not factors.all():
         raise fail("scale", "factor must not be 0")
     centre = np.array(point("scale", "about", about))
-    return copied("scale", shapes, lambda vertices: (vertices - centre) * factors + centre, bool(factors.prod() < 0))
+
+    def one(shape: Shape) -> Shape:
+        spend_vertices(shape.vertex_count)
+        vertices = (shape.vertices - centre) * factors + centre
+        if shape.uvs is not None:
+            shape = replace(shape, uvs=refitted(shape, vertices))
+        return moved("scale", shape, vertices, bool(factors.prod() < 0))
+
+    return each("scale", shapes, one)
 
 
 def mirror(shapes: Any, axis: Any = "x", at: Any = 0.0) -> Shapes:
-    """The mirror image across the plane where the axis has the value `at`; the original is not in the result."""
+    """The image only, not the original, across axis = at."""
     column = AXIS_NUMBER[choice("mirror", "axis", axis, ("x", "y", "z"))]
     plane = number("mirror", "at", at)
 
@@ -86,11 +98,19 @@ def mirror(shapes: Any, axis: Any = "x", at: Any = 0.0) -> Shapes:
         result[:, column] = 2 * plane - result[:, column]
         return result
 
-    return copied("mirror", shapes, reflect, flip=True)
+    flipped = np.eye(3)
+    flipped[column, column] = -1.0
+
+    def one(shape: Shape) -> Shape:
+        spend_vertices(shape.vertex_count)
+        made = moved("mirror", shape, reflect(shape.vertices), flip=True)
+        return made if shape.axes is None else replace(made, axes=flipped @ shape.axes)
+
+    return each("mirror", shapes, one)
 
 
 def array(shapes: Any, count: Any, step: Any) -> list[Shape]:
-    """`count` copies in a list, the first in place and each next one moved on by `step` (x, y, z)."""
+    """A list of copies, each moved on by step (x, y, z)."""
     found = flat_shapes("array", shapes)
     copies = whole("array", "count", count, 1, 10_000)
     offset = np.array(point("array", "step", step))
@@ -101,7 +121,7 @@ def array(shapes: Any, count: Any, step: Any) -> list[Shape]:
 
 
 def join(shapes: Any) -> Shape:
-    """One shape of all of them, with the part name and smoothness of the first; they must have one material."""
+    """One shape of several of one material; named as the first."""
     found = flat_shapes("join", shapes)
     if not found:
         raise fail("join", "there are no shapes to join")
@@ -115,14 +135,16 @@ def join(shapes: Any) -> Shape:
     for shape in found:
         faces.extend(tuple(i + start for i in face) for face in shape.faces)
         start += shape.vertex_count
-    known = [shape.uvs for shape in found if shape.uvs is not None]
-    uvs = np.concatenate(known) if len(known) == len(found) else None
+    plain = all(shape.uvs is None and not shape.rings and shape.axes is None for shape in found)
+    uvs = None if plain and len(found) == 1 else np.concatenate([corner_uvs(shape) for shape in found])
     vertices = np.concatenate([shape.vertices for shape in found])
-    return replace(found[0], vertices=vertices, faces=tuple(faces), uvs=uvs)
+    creases = [shape.crease if shape.smooth else 60.0 for shape in found]
+    looks: dict[str, Any] = {"smooth": any(shape.smooth for shape in found), "crease": min(creases)}
+    return remeshed(found[0], vertices, faces, uvs=uvs, axes=None, **looks)
 
 
 def part(name: Any, shapes: Any, material: Any = None, smooth: Any = None) -> Shapes:
-    """Name what the shapes are ("leg", "cushion"), and give them a material and smoothness where these are given."""
+    """Name shapes, by what they are."""
     changes: dict[str, Any] = {"part": text("part", "the name", name, 60, empty=False)}
     if material is not None:
         changes["material"] = text("part", "material", material, 60)
@@ -132,19 +154,21 @@ def part(name: Any, shapes: Any, material: Any = None, smooth: Any = None) -> Sh
 
 
 def material(name: Any, shapes: Any) -> Shapes:
-    """Give shapes a material by its role, such as "wood" or "fabric"."""
+    """Give a role only."""
     role = text("material", "the name", name, 60)
     return each("material", shapes, lambda shape: replace(shape, material=role))
 
 
-def smooth(shapes: Any, on: Any = True) -> Shapes:
-    """Shade smooth (or flat, with False); sharp edges stay sharp."""
-    shading = flag("smooth", "the second argument", on)
-    return each("smooth", shapes, lambda shape: replace(shape, smooth=shading))
+def smooth(shapes: Any, on: Any = True, angle: Any = None) -> Shapes:
+    """Or flat; edges over `angle` degrees, usually 35, stay sharp."""
+    changes: dict[str, Any] = {"smooth": flag("smooth", "the second argument", on)}
+    if angle is not None:
+        changes["crease"] = number("smooth", "angle", angle, 0.0, 180.0)
+    return each("smooth", shapes, lambda shape: replace(shape, **changes))
 
 
 def bounds(shapes: Any) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """The lowest and the highest corner ((x, y, z), (x, y, z)) of the box round all the shapes."""
+    """((x, y, z), (x, y, z)) of the lowest and highest corner."""
     found = [shape for shape in flat_shapes("bounds", shapes) if shape.vertex_count]
     if not found:
         raise fail("bounds", "there are no shapes")
@@ -154,6 +178,6 @@ def bounds(shapes: Any) -> tuple[tuple[float, ...], tuple[float, ...]]:
 
 
 def size_of(shapes: Any) -> tuple[float, ...]:
-    """Width, depth and height (x, y, z) of the box round all the shapes."""
+    """(width, depth, height) over all."""
     low, high = bounds(shapes)
     return tuple(b - a for a, b in zip(low, high, strict=True))

@@ -98,8 +98,27 @@ def linear_colour(code: str, opacity: float = 1.0) -> tuple[float, float, float,
     return (red, green, blue, opacity)
 
 
+def split_role(material: str) -> tuple[str, str]:
+    """A material as its role and its own colour as six sRGB digits: "wood #8A5A3C" is ("wood", "8A5A3C"); "" for none."""
+    role, mark, code = material.rpartition("#")
+    if not mark or len(code) != 6 or not all(c in "0123456789abcdefABCDEF" for c in code):
+        return material, ""
+    return role.strip(), code.upper()
+
+
+def coloured_role(role: str, code: str) -> str:
+    """The inverse of `split_role`."""
+    return f"{role} #{code}".strip() if code else role
+
+
 def role_colour(role: str, family: str) -> tuple[float, float, float, float]:
-    """Linear RGBA of a material role on an object of this family; "" is the family's colour, "front" a darker one."""
+    """Linear RGBA of a material role on an object of this family; "" is the family's colour, "front" a darker one.
+
+    A colour of its own ("wood #8A5A3C") counts before the role's.
+    """
+    role, code = split_role(role)
+    if code:
+        return linear_colour(code, ROLE_COLOURS[role][1] if role in ROLE_COLOURS else 1.0)
     if role in ROLE_COLOURS:
         return linear_colour(*ROLE_COLOURS[role])
     red, green, blue, opacity = linear_colour(FAMILY_COLOURS.get(family, FAMILY_COLOURS["other"]))

@@ -177,15 +177,27 @@ class Recorder:
         self.record.cameras.append(line)
 
     def furnish(self, id: Any, shapes: Any) -> None:
-        """Put shapes in the place of proxy `id`; they are in its local frame, origin at the centre of its base."""
+        """Put shapes in the place of proxy `id`; they are in its local frame, origin at the centre of its base.
+
+        A function of the proxy's size (width, depth, height) may be given instead; so the shapes follow the size.
+        """
         self._start("furnish")
         name = text("furnish", "the id", id, 100, empty=False)
         if name in self.record.furnished:
             raise fail("furnish", f"{name!r} is furnished twice")
+        if callable(shapes):
+            size = self.size_of(name)
+            if size is None:
+                raise fail("furnish", f"the proxy line of {name!r} must stand above, since a function is given")
+            shapes = shapes(size)
         found: list[Shape] = flat_shapes("furnish", shapes)
         if not found:
             raise fail("furnish", f"there are no shapes for {name!r}")
         self.record.furnished[name] = found
+
+    def size_of(self, name: str) -> tuple[float, float, float] | None:
+        """The size of a proxy whose line was read already, None for others."""
+        return next((line["size"] for line in self.record.proxies if line["id"] == name), None)
 
     def build(self) -> None:
         """The last statement: checks what refers to what."""

@@ -12,7 +12,22 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from . import cloth, growing, numbers, operations, profiles, reshape, sheets, soft, solids
+from . import (
+    carve,
+    cloth,
+    growing,
+    joinery,
+    numbers,
+    operations,
+    outlines,
+    profiles,
+    reshape,
+    sheets,
+    soft,
+    solids,
+    tints,
+    weaving,
+)
 
 CONSTANTS: dict[str, float] = {"pi": math.pi, "tau": math.tau}
 """Names with a fixed value."""
@@ -33,6 +48,9 @@ CONSTRUCTORS: dict[str, Callable[..., Any]] = {
     "keys": numbers.keys,
     "values": numbers.values,
     "items": numbers.items,
+    "rectangle": outlines.rectangle,
+    "ellipse": outlines.ellipse,
+    "spline": outlines.spline,
     "box": solids.box,
     "rounded_box": solids.rounded_box,
     "cylinder": solids.cylinder,
@@ -41,6 +59,8 @@ CONSTRUCTORS: dict[str, Callable[..., Any]] = {
     "capsule": solids.capsule,
     "torus": solids.torus,
     "prism": solids.prism,
+    "wedge": solids.wedge,
+    "panelled": joinery.panelled,
     "lathe": profiles.lathe,
     "extrude": profiles.extrude,
     "tube": profiles.tube,
@@ -51,15 +71,17 @@ CONSTRUCTORS: dict[str, Callable[..., Any]] = {
     "cushion": soft.cushion,
     "pillow": soft.pillow,
     "tufted": soft.tufted,
+    "pouf": soft.pouf,
     "drape": cloth.drape,
     "curtain": cloth.curtain,
-    "rug": cloth.rug,
+    "rug": weaving.rug,
     "leaves": growing.leaves,
     "move": operations.move,
     "turn": operations.turn,
     "scale": operations.scale,
     "mirror": operations.mirror,
     "array": operations.array,
+    "carve": carve.carve,
     "bevel": reshape.bevel,
     "subdivide": reshape.subdivide,
     "solidify": reshape.solidify,
@@ -69,6 +91,7 @@ CONSTRUCTORS: dict[str, Callable[..., Any]] = {
     "join": operations.join,
     "part": operations.part,
     "material": operations.material,
+    "tint": tints.tint,
     "smooth": operations.smooth,
     "bounds": operations.bounds,
     "size_of": operations.size_of,

@@ -14,7 +14,8 @@ from .checks import choice, fail, number, positive, whole
 from .operations import AXIS_NUMBER, Shapes, each, moved
 from .rings import Faces
 from .ripples import ripples, seed_of
-from .shape import Floats, Shape
+from .shape import Floats, Shape, remeshed
+from .unwrap import face_normals
 
 Edge = tuple[int, int]
 COST = 3
@@ -30,26 +31,16 @@ def edge_faces(shape: Shape) -> dict[Edge, list[int]]:
     return found
 
 
-def face_normals(shape: Shape) -> Floats:
-    """Unit normals of the faces (Newell's method), array (faces, 3)."""
-    result = np.zeros((len(shape.faces), 3))
-    for i, face in enumerate(shape.faces):
-        points = shape.vertices[list(face)]
-        following = np.roll(points, -1, axis=0)
-        result[i] = np.cross(points, following).sum(axis=0)
-    return np.asarray(result / np.maximum(np.linalg.norm(result, axis=1, keepdims=True), 1e-15))
-
-
 def vertex_normals(shape: Shape) -> Floats:
     """Unit normals of the vertices, means of their faces', array (vertices, 3)."""
-    result = np.zeros_like(shape.vertices)
-    for face, normal in zip(shape.faces, face_normals(shape), strict=True):
-        result[list(face)] += normal
+    corners, lengths = shape.corners
+    normals = np.repeat(face_normals(shape), lengths, axis=0)
+    result = summed(corners, normals, shape.vertex_count)
     return np.asarray(result / np.maximum(np.linalg.norm(result, axis=1, keepdims=True), 1e-15))
 
 
 def subdivide(shapes: Any, levels: Any = 1) -> Shapes:
-    """Round shapes off by Catmull-Clark subdivision; each level makes four faces of a four-sided one.
+    """Rounded off (Catmull-Clark).
 
     Source: E. Catmull, J. Clark, "Recursively generated B-spline surfaces on arbitrary topological meshes", 1978.
     """
@@ -58,7 +49,7 @@ def subdivide(shapes: Any, levels: Any = 1) -> Shapes:
     def change(shape: Shape) -> Shape:
         for _ in range(rounds):
             shape = subdivided(shape)
-        return replace(shape, smooth=True, uvs=None)
+        return replace(shape, smooth=True, crease=180.0)
 
     return each("subdivide", shapes, change)
 
@@ -94,8 +85,7 @@ def subdivided(shape: Shape) -> Shape:
     points[on_rim] = (drawn + old[on_rim]) / 2
     first = len(old) + len(keys)
     made = np.stack([corners, len(old) + edge, first + owner, len(old) + edge[behind]], axis=1)
-    faces = tuple(map(tuple, made.tolist()))
-    return replace(shape, vertices=np.concatenate([points, edge_points, middles]), faces=faces, uvs=None)
+    return remeshed(shape, np.concatenate([points, edge_points, middles]), map(tuple, made.tolist()))
 
 
 def summed(index: Any, values: Floats, count: int) -> Floats:
@@ -104,9 +94,10 @@ def summed(index: Any, values: Floats, count: int) -> Floats:
 
 
 def bevel(shapes: Any, width: Any = 0.01, angle: Any = 30.0) -> Shapes:
-    """Cut the sharp edges of closed shapes off by `width`, where faces meet at more than `angle` degrees.
+    """Sharp edges of closed shapes cut off.
 
-    Shaded smooth, the cut edges look rounded. The width is cut to a third of the shortest edge.
+    An edge is sharp where faces meet at more than `angle` degrees.
+    Shaded smooth, cut edges look rounded. The width is cut to a third of the shortest edge.
     """
     reach = positive("bevel", "width", width)
     limit = math.cos(math.radians(number("bevel", "angle", angle, 1.0, 170.0)))
@@ -189,15 +180,15 @@ def stitched(
         if len(ring) >= 3:
             faces.append(tuple(ring))
     tidy = [tuple(dict.fromkeys(face)) for face in faces]
-    return replace(shape, vertices=np.array(points), faces=tuple(f for f in tidy if len(f) >= 3), uvs=None)
+    return remeshed(shape, np.array(points), (f for f in tidy if len(f) >= 3))
 
 
 def solidify(shapes: Any, thickness: Any = 0.01) -> Shapes:
-    """Give open sheets a thickness; what was their upper side stays where it is."""
+    """Open sheets become solid; their upper side stays."""
     depth = positive("solidify", "thickness", thickness)
 
     def change(shape: Shape) -> Shape:
-        spend_vertices(8 * COST * shape.vertex_count)
+        spend_vertices(2 * COST * shape.vertex_count)
         below = shape.vertices - vertex_normals(shape) * depth
         count = shape.vertex_count
         faces: Faces = list(shape.faces) + [tuple(v + count for v in face[::-1]) for face in shape.faces]
@@ -206,13 +197,13 @@ def solidify(shapes: Any, thickness: Any = 0.01) -> Shapes:
             for a, b in zip(face, face[1:] + face[:1], strict=True):
                 if len(edges[ordered(a, b)]) == 1:
                     faces.append((b, a, a + count, b + count))
-        return replace(shape, vertices=np.concatenate([shape.vertices, below]), faces=tuple(faces), uvs=None)
+        return remeshed(shape, np.concatenate([shape.vertices, below]), faces)
 
     return each("solidify", shapes, change)
 
 
 def displace(shapes: Any, amount: Any = 0.01, size: Any = 0.2, seed: Any = 0) -> Shapes:
-    """Push the surface in and out by up to `amount`, in bumps about `size` wide; more vertices show it better."""
+    """Bumps `amount` high and `size` wide."""
     reach = number("displace", "amount", amount, -100.0, 100.0)
     wide = positive("displace", "size", size)
 
@@ -226,7 +217,7 @@ def displace(shapes: Any, amount: Any = 0.01, size: Any = 0.2, seed: Any = 0) ->
 
 
 def taper(shapes: Any, factor: Any, axis: Any = "z") -> Shapes:
-    """Make shapes narrower (factor below 1) or wider towards the positive end of the axis; the other end stays."""
+    """Narrower (factor below 1) or wider towards the positive end."""
     share = positive("taper", "factor", factor)
     column = AXIS_NUMBER[choice("taper", "axis", axis, ("x", "y", "z"))]
     others = [i for i in range(3) if i != column]
@@ -246,9 +237,9 @@ def taper(shapes: Any, factor: Any, axis: Any = "z") -> Shapes:
 
 
 def bend(shapes: Any, angle: Any, axis: Any = "x") -> Shapes:
-    """Bend shapes that stand upright by `angle` degrees over their height, round the axis "x" or "y".
+    """Bent over the height: the top goes to -Y (round "x") or +X (round "y") by up to `angle` degrees.
 
-    Positive angles lean the top towards -y (round "x") or towards +x (round "y"), as a backrest leans.
+    Shapes need several rings of vertices over their height, as from `loft` or `tube`.
     """
     total = math.radians(number("bend", "angle", angle, -359.0, 359.0))
     column = {"x": 1, "y": 0}[choice("bend", "axis", axis, ("x", "y"))]

@@ -51,6 +51,11 @@ def circle(segments: int) -> Floats:
     return np.array([(math.cos(angle), math.sin(angle), 0.0) for angle in angles])
 
 
+def ring_sizes(profile: list[tuple[float, float]], segments: int) -> tuple[int, ...]:
+    """How many points each ring has that `revolve` makes of the profile."""
+    return tuple(segments if radius > 0 else 1 for radius, _ in profile)
+
+
 def revolve(profile: list[tuple[float, float]], segments: int, loop: bool = False) -> tuple[Floats, Faces]:
     """Turn points (radius, z) round the Z axis; a radius of 0 makes a pole. Counts the vertices first."""
     spend_vertices(sum(segments if radius > 0 else 1 for radius, _ in profile))
@@ -62,14 +67,38 @@ def revolve(profile: list[tuple[float, float]], segments: int, loop: bool = Fals
 
 def signed_volume(vertices: Floats, faces: Faces) -> float:
     """Volume inside a closed mesh, negative when its faces look inward."""
-    triangles = np.array([(face[0], face[i], face[i + 1]) for face in faces for i in range(1, len(face) - 1)])
-    a, b, c = (vertices[triangles[:, i]] - vertices[0] for i in range(3))
-    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
+    total = 0.0
+    by_length: dict[int, list[tuple[int, ...]]] = {}
+    for face in faces:
+        by_length.setdefault(len(face), []).append(face)
+    points = vertices - vertices[0]
+    for length, same in by_length.items():
+        corners = points[np.array(same)]
+        fan = np.cross(corners[:, 1:-1], corners[:, 2:]) if length > 3 else np.cross(corners[:, 1], corners[:, 2])
+        fan = fan.sum(axis=1) if length > 3 else fan
+        total += float(np.einsum("ij,ij->", corners[:, 0], fan))
+    return total / 6
 
 
 def outward(vertices: Floats, faces: Faces) -> Faces:
     """The faces of a closed mesh, all turned over if they look inward."""
     return faces if signed_volume(vertices, faces) >= 0 else [face[::-1] for face in faces]
+
+
+def ringed(
+    where: str, vertices: Floats, faces: Faces, at: Any, rings: tuple[int, ...], loop: bool = False,
+    smooth: bool = True, crease: float = 35.0,
+) -> Shape:  # fmt: skip
+    """A closed shape that `skin` made of rings of these sizes, turned outward and moved by `at`."""
+    inward = signed_volume(vertices, faces) < 0
+    moved = vertices + np.array(point(where, "at", at))
+    made = tuple(face[::-1] for face in faces) if inward else tuple(faces)
+    return Shape(moved, made, smooth=smooth, crease=crease, rings=rings, loop=loop, flipped=inward)
+
+
+def crease_of(segments: int) -> float:
+    """The angle in degrees above which an edge of a round thing of so many segments is meant to be sharp."""
+    return min(max(35.0, 1.1 * 360.0 / segments), 80.0)
 
 
 def along(where: str, vertices: Floats, axis: Any) -> Floats:
@@ -78,7 +107,9 @@ def along(where: str, vertices: Floats, axis: Any) -> Floats:
     return np.roll(vertices, shift, axis=1) if shift else vertices
 
 
-def placed(where: str, vertices: Floats, faces: Faces, at: Any, smooth: bool = False) -> Shape:
+def placed(
+    where: str, vertices: Floats, faces: Faces, at: Any, smooth: bool = False, crease: float = 35.0
+) -> Shape:  # fmt: skip
     """A shape of these vertices moved by `at`."""
     moved = vertices + np.array(point(where, "at", at))
-    return Shape(vertices=moved, faces=tuple(faces), smooth=smooth)
+    return Shape(vertices=moved, faces=tuple(faces), smooth=smooth, crease=crease)

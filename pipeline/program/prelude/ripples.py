@@ -46,10 +46,11 @@ def normals_of(points: Floats) -> Floats:
     return np.asarray(normals / np.maximum(length, 1e-12))
 
 
-def thick_sheet(points: Floats, thickness: float, cloth: Floats) -> tuple[Floats, Faces, Floats]:
+def thick_sheet(points: Floats, thickness: float | Floats, cloth: Floats) -> tuple[Floats, Faces, Floats]:
     """A closed sheet: the grid (rows, columns, 3) as its upper side, the lower side `thickness` behind it.
 
     Args:
+        thickness: one, or one for each point (rows, columns, 1).
         cloth: where each point lies on the flat cloth, metres, (rows, columns, 2).
 
     Returns:

@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import functools
+from dataclasses import dataclass, field, replace
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -21,8 +23,11 @@ class Shape:
         faces: tuples of vertex indices, counter-clockwise seen from outside.
         part: semantic part name ("leg", "cushion"), "" when not named yet.
         material: material role ("wood", "fabric"), "" for the object's own colour.
-        smooth: shade smooth.
+        smooth: shade smooth; edges where faces meet at more than `crease` degrees stay sharp.
         uvs: None, or one (u, v) in metres for each face corner, float64 array (sum of face lengths, 2).
+        axes: the part's own axes as columns, where it was turned since it was made; textures follow them.
+        rings, loop, flipped: sizes of the rings that the faces were made from (`rings.skin`), whether the last ring
+            meets the first, and whether the faces were turned over since; () for all other meshes.
     """
 
     vertices: Floats
@@ -31,12 +36,29 @@ class Shape:
     material: str = ""
     smooth: bool = False
     uvs: Floats | None = None
+    axes: Floats | None = None
+    crease: float = 35.0
+    rings: tuple[int, ...] = ()
+    loop: bool = False
+    flipped: bool = False
     extra: dict[str, Any] = field(default_factory=dict)
+
+    @functools.cached_property
+    def corners(self) -> tuple[Any, Any]:
+        """The vertex of every face corner, and the number of corners of every face, as arrays."""
+        lengths = np.fromiter(map(len, self.faces), dtype=np.int64, count=len(self.faces))
+        return np.fromiter(chain.from_iterable(self.faces), dtype=np.int64, count=int(lengths.sum())), lengths
 
     @property
     def vertex_count(self) -> int:
         """Number of vertices."""
         return len(self.vertices)
+
+
+def remeshed(shape: Shape, vertices: Floats, faces: Any, **more: Any) -> Shape:
+    """The shape with a new mesh, without what was only true of the old one (its uvs and rings)."""
+    changes = {"uvs": None, "rings": (), "loop": False, "flipped": False, **more}
+    return replace(shape, vertices=vertices, faces=tuple(faces), **changes)
 
 
 def flat_shapes(where: str, shapes: Any) -> list[Shape]:

@@ -17,11 +17,7 @@ MOST_FACES = 500_000
 
 
 def grid(function: Any, nx: Any, ny: Any, size: Any = (1.0, 1.0), at: Any = ORIGIN, smooth: Any = True) -> Shape:
-    """A sheet of nx by ny cells, its upper side up, shaped by `function(u, v)` with u and v from 0 to 1.
-
-    The function returns a height z, and the sheet spans `size` (width, depth) round its middle; or a point (x, y, z),
-    and `size` does not matter.
-    """
+    """A sheet by function(u, v), u and v in 0..1, that gives a height over `size` (width, depth), or a point (x, y, z)."""
     if not callable(function):
         raise fail("grid", "the first argument must be a function of u and v, such as a lambda")
     columns, rows = whole("grid", "nx", nx, 1, 2000), whole("grid", "ny", ny, 1, 2000)
@@ -48,7 +44,7 @@ def grid(function: Any, nx: Any, ny: Any, size: Any = (1.0, 1.0), at: Any = ORIG
 
 
 def mesh(vertices: Any, faces: Any, at: Any = ORIGIN, smooth: Any = False) -> Shape:
-    """A mesh of points (x, y, z) and faces, each a list of at least three point numbers, counter-clockwise outside."""
+    """Points (x, y, z); faces are lists of point numbers, counter-clockwise from outside."""
     if not isinstance(vertices, (list, tuple)) or len(vertices) < 3:
         raise fail("mesh", "vertices must be a list of at least three points (x, y, z)")
     spend_vertices(len(vertices))
