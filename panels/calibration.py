@@ -30,7 +30,7 @@ class CODE_AS_ROOM_PT_calibration(RoomPanel):
             draw_sentence(layout, "Load a picture first.", context)
             return
         if state.room_size is not None:
-            draw_found(layout, state)
+            draw_found(layout, context, state)
             draw_handles(layout, context)
         draw_known(layout, context, state)
         if state.room_size is None:
@@ -38,13 +38,16 @@ class CODE_AS_ROOM_PT_calibration(RoomPanel):
             draw_sentence(layout, text, context)
 
 
-def draw_found(layout: Any, state: RoomState) -> None:
-    """The room's size, the camera, and how well both fit."""
+def draw_found(layout: Any, context: Any, state: RoomState) -> None:
+    """The room's size and how sure it is, the camera, and how well both fit."""
     assert state.room_size is not None
     width, depth, height = state.room_size
     box = layout.box().column(align=True)
     box.label(text=f"{width:.2f} x {depth:.2f} m, {height:.2f} m high", icon="HOME")
-    box.label(text=CAMERAS.get(state.camera_kind, state.camera_kind), icon="CAMERA_DATA")
+    if state.scale_words:
+        draw_sentence(box, f"{state.scale_words}.", context, "DRIVER_DISTANCE")
+    camera = f"Taken {state.camera_name}" if state.camera_name else CAMERAS.get(state.camera_kind, state.camera_kind)
+    draw_sentence(box, f"{camera}.", context, "CAMERA_DATA")
     quality = fit_quality(state.error_px, state.picture_size)
     text = f"Fits within {state.error_px:.1f} px: {quality}"
     row = box.row()

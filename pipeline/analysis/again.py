@@ -9,9 +9,9 @@ from ..artifacts.analysis import DetectedObject, Finding
 from ..artifacts.common import ImageBox
 from ..artifacts.corrections import Found
 from ..artifacts.replies import MissedReply, SecondLookReply
-from .calibrate import residual
 from .clean import SHELL_NAMES, SIDE_NAMES, clean_id, clean_object, fix_parents
 from .merge import to_whole_picture, with_corrections
+from .residuals import residual
 
 MARGIN = 0.6
 """How much of its own size is shown around an object, on each side."""

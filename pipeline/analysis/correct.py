@@ -17,10 +17,10 @@ from ..errors import RoomError
 from ..geometry.camera import GeometryError
 from ..geometry.fit import fit_from_known_floor
 from ..geometry.measuring import floor_distance
-from .calibrate import residual
 from .correct_objects import corrected_objects
 from .recorner import recornered
 from .rescale import Similarity, rescaled_analysis, rescaled_calibration
+from .residuals import residual
 
 DIFFERENT = 0.02
 """Two known sizes that differ by more than this part are reported."""
@@ -149,8 +149,9 @@ def _with_height(analysis: SceneAnalysis, calibration: Calibration, height: floa
     tops = analysis.wall_top_polygon
     if tops and calibration.camera.kind == "perspective":
         fit = fit_from_known_floor(
-            analysis.image_size, analysis.floor_polygon, calibration.floor, tops, height, "perspective"
-        )
+            analysis.image_size, analysis.floor_polygon, calibration.floor, tops, height, "perspective",
+            calibration.camera.principal,
+        )  # fmt: skip
         update |= {"camera": fit.camera, "error_px": fit.error_px}
     size = (analysis.room_size[0], analysis.room_size[1], height)
     return analysis.model_copy(update={"room_size": size}), calibration.model_copy(update=update)

@@ -13,6 +13,13 @@ from ..artifacts.common import ImageBox
 from ..picture import ReferencePicture, encode_for_model
 
 OVERLAP = 0.12
+MOST_SURFACES = 3
+LEAST_ENLARGED = 1.6
+"""A surface is shown by itself when it comes out so much larger than in its quarter of the picture."""
+AROUND = 0.08
+"""How much is shown around a surface, as a part of its longer side."""
+TOP = (0.3, 1.4)
+"""Heights in metres between which a top is looked at for small things."""
 ENLARGED = 1100
 """Longer side in pixels that a part of the picture is enlarged to, at most three times."""
 
@@ -36,6 +43,45 @@ def quarters(analysis: SceneAnalysis) -> list[ImageBox]:
         for y in (top, bottom - half_y)
         for x in (left, right - half_x)
     ]
+
+
+def dense_surfaces(objects: Sequence[DetectedObject], part: ImageBox) -> list[tuple[str, ImageBox]]:
+    """Up to three things that carry many small ones, or could: id, and the part of the picture that shows it.
+
+    What carries two or more things comes first, then the largest tops at the height of tables and beds.
+
+    Args:
+        part: a quarter as the model sees it besides; what is shown not much larger than there is left out.
+    """
+    carried: dict[str, int] = {}
+    for item in objects:
+        if item.placement == "surface" and item.parent:
+            carried[item.parent] = carried.get(item.parent, 0) + 1
+    longest = max(part.x_max - part.x_min, part.y_max - part.y_min)
+    ranked = []
+    for item in objects:
+        count = carried.get(item.id, 0)
+        flat_top = TOP[0] <= item.centre[2] + item.size[2] / 2 <= TOP[1] and item.placement in ("floor", "wall")
+        if item.box is None or not (count >= 2 or flat_top):
+            continue
+        crop = _around(item.box)
+        if max(crop.x_max - crop.x_min, crop.y_max - crop.y_min) * LEAST_ENLARGED <= longest:
+            ranked.append((-min(count, 9) if count >= 2 else 0, -item.box.area, item.id, crop))
+    chosen: list[tuple[str, ImageBox]] = []
+    for _, _, name, crop in sorted(ranked, key=lambda r: r[:3]):
+        if len(chosen) < MOST_SURFACES and all(crop.iou(other) < 0.5 for _, other in chosen):
+            chosen.append((name, crop))
+    return chosen
+
+
+def _around(box: ImageBox) -> ImageBox:
+    margin = max(8.0, AROUND * max(box.x_max - box.x_min, box.y_max - box.y_min))
+    return ImageBox(
+        x_min=max(0.0, box.x_min - margin),
+        y_min=max(0.0, box.y_min - margin),
+        x_max=min(1000.0, box.x_max + margin),
+        y_max=min(1000.0, box.y_max + margin),
+    )
 
 
 def enlarged(picture: ReferencePicture, part: ImageBox) -> bytes:

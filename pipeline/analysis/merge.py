@@ -7,12 +7,23 @@ from collections.abc import Sequence
 
 from ..artifacts.analysis import DetectedObject, Finding, SceneAnalysis
 from ..artifacts.common import ImageBox
-from ..artifacts.replies import BoxReply, CorrectionReply, MissedReply, SecondLookReply
-from .clean import MAX_OBJECTS, SIDE_NAMES, clean_box, clean_object, facing_yaw, fix_parents
+from ..artifacts.replies import BoxReply, CorrectionReply, MetresReply, MissedReply, SecondLookReply, SizeReply
+from .clean import MAX_METRES, MAX_OBJECTS, SIDE_NAMES, clean_box, clean_object, facing_yaw, fix_parents
 
 SAME_BOX = 0.6
+"""IoU from which two boxes with a word of their categories in common are of one thing."""
+SAME_PLACE = 0.8
+"""IoU from which two boxes are of one thing whatever it is called, when it stands on the same."""
+CUT = 0.8
+"""What part of a box that a picture's edge cuts has to lie in another one to be of the same thing."""
+AT_EDGE = 12.0
+"""A box that comes so near to the edge of its enlarged part (0-1000 of that) is taken to be cut there."""
+SMALL = 60.0
+"""Sides in 0-1000 below which boxes are compared leniently: a few units are a large part of them."""
+LEAST_SIZE = 0.005
 BOX_CORRECTED = "corrected box"
 """Source of an object whose box the second look moved: its metres were guessed from the wrong box."""
+SEEN_AGAIN = "second look"
 
 
 def to_whole_picture(box: BoxReply, crop: ImageBox | None) -> BoxReply:
@@ -45,7 +56,8 @@ def merge_second_look(analysis: SceneAnalysis, reply: SecondLookReply, crops: li
         found = _missed(missed, crops, taken, findings)
         if found is None:
             continue
-        twin = next((o for o in objects if _same(o, found)), None)
+        cut = _is_cut(missed, crops)
+        twin = next((o for o in objects if _same(o, found, cut)), None)
         if twin is not None:
             findings.append(Finding(about=found.id, message=f"Seen again in the second look; it is {twin.id}."))
             taken.discard(found.id)
@@ -76,11 +88,45 @@ def _missed(
     return clean_object(placed, taken, findings, "second look")
 
 
-def _same(a: DetectedObject, b: DetectedObject) -> bool:
-    """Whether two detections are one thing: boxes that agree, and categories that share a word."""
-    if a.box is None or b.box is None or a.box.iou(b.box) < SAME_BOX:
+def _is_cut(missed: MissedReply, crops: list[ImageBox | None]) -> bool:
+    """Whether a box ends at the edge of an enlarged part, beyond which the thing may go on."""
+    if crops[missed.picture - 1] is None:
         return False
-    return bool(set(a.category.lower().split()) & set(b.category.lower().split()))
+    box = missed.box
+    return min(box.x_min, box.y_min) < AT_EDGE or max(box.x_max, box.y_max) > 1000.0 - AT_EDGE
+
+
+def _same(a: DetectedObject, b: DetectedObject, cut: bool = False) -> bool:
+    """Whether two detections are one thing: boxes that agree, and categories that share a word, or one place.
+
+    Args:
+        cut: `b` was seen at the edge of an enlarged part, and may be a piece of `a`.
+    """
+    if a.box is None or b.box is None:
+        return False
+    iou = a.box.iou(b.box)
+    if set(a.category.lower().split()) & set(b.category.lower().split()):
+        within = _shared(a.box, b.box) / max(1e-9, b.box.area)
+        return iou >= SAME_BOX or (cut and within >= CUT) or _nearly(a.box, b.box)
+    return iou >= SAME_PLACE and a.placement == b.placement and a.parent == b.parent
+
+
+def _nearly(a: ImageBox, b: ImageBox) -> bool:
+    """Whether two small boxes are one, read twice with an error of some units: about one size, centres close together."""
+    sides = [(box.x_max - box.x_min, box.y_max - box.y_min) for box in (a, b)]
+    if max(v for pair in sides for v in pair) > SMALL:
+        return False
+    return all(
+        0.6 < sides[0][i] / sides[1][i] < 1.0 / 0.6
+        and abs(a.centre[i] - b.centre[i]) < 0.35 * min(sides[0][i], sides[1][i])
+        for i in (0, 1)
+    )
+
+
+def _shared(a: ImageBox, b: ImageBox) -> float:
+    width = min(a.x_max, b.x_max) - max(a.x_min, b.x_min)
+    height = min(a.y_max, b.y_max) - max(a.y_min, b.y_min)
+    return max(0.0, width) * max(0.0, height)
 
 
 def with_corrections(
@@ -108,6 +154,10 @@ def _apply(item: DetectedObject, fix: CorrectionReply, findings: list[Finding]) 
     box = clean_box(fix.box)
     if box is not None:
         update["box"] = box
+    update |= _metres(item, fix.centre_m, fix.size_m)
+    if fix.centre_m is not None and "centre" in update:
+        update["source"] = SEEN_AGAIN
+    elif box is not None:
         update["source"] = BOX_CORRECTED
     if fix.category:
         update["category"] = fix.category.strip()[:60]
@@ -120,3 +170,20 @@ def _apply(item: DetectedObject, fix: CorrectionReply, findings: list[Finding]) 
             Finding(about=item.id, message=f"Corrected by the second look: {', '.join(update)}. {fix.wrong[:100]}")
         )
     return item.model_copy(update=update)
+
+
+def _metres(item: DetectedObject, centre: MetresReply | None, size: SizeReply | None) -> dict[str, object]:
+    """What a correction says of place and size, as far as it is possible; the underside stays where it is."""
+    update: dict[str, object] = {}
+    base, sizes = item.centre[2] - item.size[2] / 2, item.size
+    if size is not None:
+        said = (abs(size.width), abs(size.depth), abs(size.height))
+        if min(said) >= LEAST_SIZE and max(said) <= MAX_METRES:
+            sizes = said
+            update["size"] = said
+    x, y = item.centre[:2]
+    if centre is not None and max(abs(centre.x_m), abs(centre.y_m)) <= MAX_METRES:
+        x, y = centre.x_m, centre.y_m
+    if update or centre is not None:
+        update["centre"] = (x, y, base + sizes[2] / 2)
+    return update

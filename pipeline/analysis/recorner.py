@@ -10,11 +10,11 @@ from ..artifacts.analysis import ArchitectureItem, Calibration, DetectedObject, 
 from ..artifacts.camera import CameraModel
 from ..artifacts.common import ImagePoint, Metres2
 from ..artifacts.corrections import Found
-from ..geometry.camera import Kind
 from ..geometry.fit import CameraFit, fit_camera
 from ..geometry.polygon import area, bounding_rectangle
-from .calibrate import LEAST_TURN, residual
 from .frames import transferred
+from .into_frame import LEAST_TURN
+from .residuals import residual
 
 CLOSE_SCALE = 1e-3
 """Part of the scale that need not be sought any further: every fit takes a tenth of a second."""
@@ -73,12 +73,14 @@ def recornered(found: Found, polygon: Sequence[ImagePoint]) -> tuple[SceneAnalys
 
 def _fit(analysis: SceneAnalysis, calibration: Calibration, polygon: Sequence[ImagePoint]) -> CameraFit:
     """The camera for these corners, at the scale that holds already."""
-    flat = analysis.view in ("orthographic", "plan")
-    tops = None if flat else analysis.wall_top_polygon
-    kind: Kind = calibration.camera.kind
+    camera, tops = calibration.camera, analysis.wall_top_polygon
+    if tops is not None and len(tops) != len(polygon):
+        tops = None
     width = analysis.room_size[0]
     for _ in range(8):
-        fit = fit_camera(analysis.image_size, polygon, width, tops, calibration.height, kind)
+        fit = fit_camera(
+            analysis.image_size, polygon, width, tops, calibration.height, camera.kind, camera.principal, camera
+        )
         there = transferred(calibration.camera, fit.camera, calibration.floor)
         covered = 0.0 if there is None else area(there)
         if covered <= 0:

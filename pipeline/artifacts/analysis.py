@@ -9,6 +9,7 @@ from pydantic import AfterValidator
 
 from .camera import CameraModel
 from .common import Artifact, ImageBox, ImagePoint, Metres2, Metres3, Placement, Salience, Shape
+from .trust import Trust
 
 ArchitectureKind = Literal["wall", "partition", "door", "window", "opening", "builtin"]
 ViewKind = Literal["perspective", "orthographic", "plan"]
@@ -120,13 +121,30 @@ class ObjectResidual(Artifact):
     shift: Metres2
 
 
+class TriedCamera(Artifact):
+    """A kind of camera that was fitted, and how well it explains the picture.
+
+    Attributes:
+        name: how the picture would have been taken, in plain words ("straight down", "at an angle").
+        cost: what it leaves unexplained and what its own freedom costs; lower is better.
+        error_px: of the corners; objects_px: usual distance of box edges from where the metres put them, if known.
+    """
+
+    name: str
+    cost: float
+    error_px: float
+    objects_px: float | None = None
+
+
 class Calibration(Artifact):
     """The fitted camera and the room's outline in metres that belongs to it.
 
     Attributes:
         error_px: root mean square reprojection error of the corners, pixels.
-        scale_source: what fixed the scale ("model", "known length", "door", ...).
+        scale_source: what fixed the scale ("model", "model and 5 anchors", "known length", ...).
         scale_spread: relative uncertainty of the scale, 0 when it is given.
+        tried: the cameras that were fitted, the chosen one first.
+        trust: what was learnt from this picture of how good its boxes and its metres are; None when nothing was.
     """
 
     camera: CameraModel
@@ -135,5 +153,7 @@ class Calibration(Artifact):
     error_px: float
     scale_source: str
     scale_spread: float = 0.0
+    tried: list[TriedCamera] = []
+    trust: Trust | None = None
     residuals: list[ObjectResidual] = []
     findings: list[Finding] = []

@@ -21,16 +21,8 @@ from ..artifacts.camera import CameraModel
 from ..artifacts.common import ImagePoint, Metres2
 from .camera import GeometryError, Kind, Projector, camera_from_projector
 from .fit_problem import TILT_X, TILT_Y, Problem
-from .fit_solve import (
-    ASSUMED_HEIGHT,
-    CORNER_NOISE,
-    Sighting,
-    kinds_to_try,
-    note,
-    solve_kind,
-    turned_similarity,
-    warning,
-)
+from .fit_sighting import ASSUMED_HEIGHT, CORNER_NOISE, Sighting, note, warning
+from .fit_solve import kinds_to_try, solve_kind, turned_similarity
 from .polygon import Floats, bounding_rectangle, signed_area
 
 HeightSource = Literal["given", "measured", "assumed"]
@@ -66,6 +58,7 @@ def fit_camera(
     height: float | None = None,
     kind: Kind | None = None,
     principal: ImagePoint | None = None,
+    expected: CameraModel | None = None,
 ) -> CameraFit:
     """Fit with whatever is known of the floor.
 
@@ -73,17 +66,19 @@ def fit_camera(
         floor_size: the width of the floor's bounding rectangle, or its (width, depth), or all corners in metres in
             the order of `floor_polygon`. Corners that contradict the picture are used for their size only.
 
+        expected: a camera that was found before: lens and tilt are assumed to be about the same.
+
     Other arguments, result and errors as in `fit_from_known_length`.
     """
     if isinstance(floor_size, int | float):
         return fit_from_known_length(
-            image_size, floor_polygon, floor_size, None, wall_top_polygon, height, kind, principal
+            image_size, floor_polygon, floor_size, None, wall_top_polygon, height, kind, principal, expected
         )
     values = np.asarray(floor_size, dtype=float)
     if values.ndim == 1 and len(values) in (1, 2, 3):
         depth = float(values[1]) if len(values) > 1 else None
         return fit_from_known_length(
-            image_size, floor_polygon, float(values[0]), depth, wall_top_polygon, height, kind, principal
+            image_size, floor_polygon, float(values[0]), depth, wall_top_polygon, height, kind, principal, expected
         )
     if values.ndim != 2 or values.shape[1] != 2:
         raise GeometryError("The floor's size must be a width, a width and a depth, or its corners in metres.")
@@ -138,6 +133,7 @@ def fit_from_known_length(
     height: float | None = None,
     kind: Kind | None = None,
     principal: ImagePoint | None = None,
+    expected: CameraModel | None = None,
 ) -> CameraFit:
     """Fit the camera and the floor's shape from one known length (or two).
 
@@ -149,6 +145,7 @@ def fit_from_known_length(
         height: wall height in metres when known; otherwise about 2.7 m is assumed.
         kind: the kind of camera when known; None decides by how much larger the wall tops are than the floor.
         principal: where the optical axis meets the picture, 0-1000; None is the centre.
+        expected: a camera that was found before, see `fit_camera`.
 
     Raises:
         GeometryError: corners that no room can have (fewer than three, on a line, not finite), or no positive size.
@@ -158,7 +155,7 @@ def fit_from_known_length(
             raise GeometryError(
                 "The known length must lie between 0.1 and 1000 metres.", "Give the room's width in metres."
             )
-    setup = Sighting.of(image_size, floor_polygon, wall_top_polygon, height, kind, principal)
+    setup = Sighting.of(image_size, floor_polygon, wall_top_polygon, height, kind, principal, expected)
     return _fit(setup, None, float(width), None if depth is None else float(depth))
 
 
@@ -182,10 +179,10 @@ def _fit(setup: Sighting, known: Floats | None, width: float | None, depth: floa
         flat, deep = solved
         clear = deep[0].error_px(deep[1]) < 0.7 * flat[0].error_px(flat[1])
         problem, x = deep if clear else flat
-    return _finish(setup, problem, x)
+    return finished(setup, problem, x)
 
 
-def _finish(setup: Sighting, problem: Problem, x: Floats) -> CameraFit:
+def finished(setup: Sighting, problem: Problem, x: Floats) -> CameraFit:
     """Move the origin to the bounding rectangle's centre, make the known length exact, and report."""
     lens, corners, height = problem.lens(x), problem.corners(x), problem.height(x)
     linked = len(set(problem.link_x)) < len(corners) or len(set(problem.link_y)) < len(corners)
@@ -201,6 +198,8 @@ def _finish(setup: Sighting, problem: Problem, x: Floats) -> CameraFit:
             for want, have in ((assumed.width, high_x - low_x), (assumed.depth, high_y - low_y))
             if want is not None
         ]
+        if assumed.area is not None:
+            ratios = [math.sqrt(assumed.area / ((high_x - low_x) * (high_y - low_y)))]
         factor = math.exp(float(np.mean(np.log(ratios))))
         if max(ratios) / min(ratios) > 1.08:
             setup.findings.append(

@@ -2,7 +2,8 @@
 """The camera fit as a least-squares problem: unknowns, what the picture shows, and what is assumed.
 
 The unknowns are chosen to be nearly independent: pixels for a metre at the floor point that the camera aims at, the
-distance to that point, tilt, roll, that point, the wall height, and the corners' metric coordinates.
+distance to that point, tilt, roll, that point, the wall height, how far the optical axis is off the given principal
+point (a part of the picture's longer side), and the corners' metric coordinates.
 """
 
 from __future__ import annotations
@@ -13,12 +14,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .camera import NEAR, Projector, tilt_rotation
+from .fit_evidence import Evidence
+from .fit_links import mean_by
 from .least_squares import levenberg_marquardt
 from .polygon import Floats
 
-SCALE, DISTANCE, TILT_X, TILT_Y, ROLL, AIM_X, AIM_Y, HEIGHT = range(8)
-CAMERA_UNKNOWNS = 8
-STEPS = np.array((0.05, 0.05, 3.0, 3.0, 2.0, 0.2, 0.2, 0.05))
+SCALE, DISTANCE, TILT_X, TILT_Y, ROLL, AIM_X, AIM_Y, HEIGHT, SHIFT_X, SHIFT_Y = range(10)
+CAMERA_UNKNOWNS = 10
+SHIFT = frozenset((SHIFT_X, SHIFT_Y))
+STEPS = np.array((0.05, 0.05, 3.0, 3.0, 2.0, 0.2, 0.2, 0.05, 0.02, 0.02))
 ORTHO_DISTANCE = 10.0
 ROBUST_FROM = 4.0  # corners off by more than this many standard deviations pull less
 
@@ -29,9 +33,11 @@ class Assumptions:
 
     Attributes:
         height, focal: expected wall height in metres and focal length in pixels, with the spread of their logarithms.
-        tilt, roll: degrees around none.
+        tilt, roll: degrees; the tilt is around `towards` (tilt_x, tilt_y).
+        shift: of the optical axis from the principal point, a part of the picture's longer side.
         square: degrees by which a wall may leave the two main directions before it counts as slanted.
         width, depth: known extent of the floor's bounding rectangle in metres, or None, with the log's spread.
+        area: of that rectangle, instead of both. aspect: width / depth as someone stated it, with the log's spread.
     """
 
     height: float
@@ -44,6 +50,11 @@ class Assumptions:
     width: float | None = None
     depth: float | None = None
     size_spread: float = 0.002
+    area: float | None = None
+    aspect: float | None = None
+    aspect_spread: float = 0.08
+    towards: tuple[float, float] = (0.0, 0.0)
+    shift: float = 0.12
 
 
 @dataclass(frozen=True)
@@ -56,6 +67,7 @@ class Problem:
         link_x, link_y: for each corner, which x and which y coordinate it uses; walls along an axis share one.
         sigma: pixels by which corners are expected to be off.
         frozen: camera unknowns that keep their start value.
+        evidence: objects that tell of the camera too, or None.
     """
 
     perspective: bool
@@ -68,7 +80,8 @@ class Problem:
     link_x: tuple[int, ...]
     link_y: tuple[int, ...]
     sigma: float
-    frozen: frozenset[int] = frozenset()
+    frozen: frozenset[int] = SHIFT
+    evidence: Evidence | None = None
 
     def lens(self, x: Floats) -> Projector:
         """The camera that the unknowns describe."""
@@ -76,7 +89,8 @@ class Problem:
         scale, distance = math.exp(min(20.0, x[SCALE])), math.exp(min(12.0, x[DISTANCE]))
         position = np.array((x[AIM_X], x[AIM_Y], 0.0)) + distance * rotation[:, 2]
         focal = scale * distance if self.perspective else scale
-        return Projector(self.perspective, rotation, position, focal, self.principal, self.size)
+        principal = self.principal + x[[SHIFT_X, SHIFT_Y]] * float(self.size.max())
+        return Projector(self.perspective, rotation, position, focal, principal, self.size)
 
     def corners(self, x: Floats) -> Floats:
         """Metric corners (N, 2)."""
@@ -96,35 +110,26 @@ class Problem:
 
     def pixel_errors(self, x: Floats) -> Floats:
         """Reprojection errors in pixels, (M, 2), floor first, wall tops that are known after."""
-        errors: Floats = self._pixel_errors(x[None])[0]
+        errors: Floats = self._pixel_errors(x[None], _View.of(self, x[None]))[0]
         return errors
 
-    def _pixel_errors(self, many: Floats) -> Floats:
-        """As `pixel_errors` for many vectors of unknowns at once, (B, M, 2): the same camera as `lens`, in bulk."""
-        rotation = _rotations(many)
-        distance = np.exp(np.minimum(12.0, many[:, DISTANCE]))
-        focal = np.exp(np.minimum(20.0, many[:, SCALE])) * (distance if self.perspective else 1.0)
-        position = distance[:, None] * rotation[:, :, 2]
-        position[:, :2] += many[:, [AIM_X, AIM_Y]]
+    def evidence_errors(self, x: Floats) -> Floats | None:
+        """How far the objects' boxes are from where their metres put them, pixels (K, 4)."""
+        return None if self.evidence is None else self._evidence_errors(x[None], _View.of(self, x[None]))[0]
+
+    def _pixel_errors(self, many: Floats, view: _View) -> Floats:
+        """As `pixel_errors` for many vectors of unknowns at once, (B, M, 2)."""
         corners = self._corners(many)
-        flat = corners - position[:, None, :2]
-        errors = [self._seen(flat, -position[:, 2], rotation, focal) - self.floor]
+        errors = [view.pixels(corners, np.zeros((1, 1))) - self.floor]
         if self.tops is not None:
-            level = np.exp(np.minimum(5.0, many[:, HEIGHT])) - position[:, 2]
+            level = np.exp(np.minimum(5.0, many[:, HEIGHT]))[:, None]
             valid = np.isfinite(self.tops[:, 0])
-            errors.append(self._seen(flat[:, valid], level, rotation, focal) - self.tops[valid])
+            errors.append(view.pixels(corners[:, valid], level) - self.tops[valid])
         return np.concatenate(errors, axis=1)
 
-    def _seen(self, flat: Floats, level: Floats, rotation: Floats, focal: Floats) -> Floats:
-        """Pixels (B, N, 2) of points relative to the camera: (B, N, 2) across and (B,) up."""
-        local = flat @ rotation[:, :2, :] + level[:, None, None] * rotation[:, 2:3, :]
-        seen = local[:, :, :2] * (1.0, -1.0) * focal[:, None, None]
-        if self.perspective:
-            with np.errstate(divide="ignore", invalid="ignore"):
-                depth = -local[:, :, 2:]
-                seen = np.where(depth > NEAR, seen / depth, np.nan)
-        result: Floats = self.principal + seen
-        return result
+    def _evidence_errors(self, many: Floats, view: _View) -> Floats:
+        assert self.evidence is not None
+        return self.evidence.errors(view.pixels(*self.evidence.points_in(self._corners(many))))
 
     def error_px(self, x: Floats) -> float:
         """Root mean square distance between corners as given and as seen by the camera, pixels."""
@@ -132,18 +137,30 @@ class Problem:
 
     def residuals(self, many: Floats) -> Floats:
         """All residuals in units of their standard deviations, for vectors of unknowns (B, n): (B, m)."""
-        relative = self._pixel_errors(many).reshape(len(many), -1) / self.sigma / ROBUST_FROM
+        view = _View.of(self, many)
+        relative = self._pixel_errors(many, view).reshape(len(many), -1) / self.sigma / ROBUST_FROM
         # Pseudo-Huber: quadratic for small errors, linear for large ones.
         seen = np.sign(relative) * ROBUST_FROM * np.sqrt(2 * (np.sqrt(1 + relative**2) - 1))
-        return np.concatenate([seen, self._camera_priors(many), self._floor_priors(many)], axis=1)
+        parts = [seen, self._camera_priors(many), self._floor_priors(many)]
+        if self.evidence is not None:
+            parts.append(self.evidence.residuals(self._evidence_errors(many, view)))
+        return np.concatenate(parts, axis=1)
+
+    def cost(self, x: Floats) -> float:
+        """Half the sum of squared residuals."""
+        values = self.residuals(x[None])[0]
+        total = float(values @ values) / 2
+        return total if math.isfinite(total) else math.inf
 
     def _camera_priors(self, many: Floats) -> Floats:
         assumed = self.assumed
         priors = [
             (many[:, HEIGHT] - math.log(assumed.height)) / assumed.height_spread,
-            many[:, TILT_X] / assumed.tilt,
-            many[:, TILT_Y] / assumed.tilt,
+            (many[:, TILT_X] - assumed.towards[0]) / assumed.tilt,
+            (many[:, TILT_Y] - assumed.towards[1]) / assumed.tilt,
             many[:, ROLL] / assumed.roll,
+            many[:, SHIFT_X] / assumed.shift,
+            many[:, SHIFT_Y] / assumed.shift,
         ]
         if self.perspective:
             focal = many[:, SCALE] + many[:, DISTANCE]
@@ -166,6 +183,11 @@ class Problem:
             for axis, want in enumerate((assumed.width, assumed.depth))
             if want is not None
         ]
+        if assumed.area is not None:
+            sizes.append((extent.sum(axis=1, keepdims=True) - math.log(assumed.area)) / assumed.size_spread)
+        if assumed.aspect is not None:
+            said = (extent[:, :1] - extent[:, 1:] - math.log(assumed.aspect)) / assumed.aspect_spread
+            sizes.append(np.sign(said) * np.sqrt(np.log1p(said**2)))
         return np.concatenate([slant, middle, *sizes], axis=1)
 
     def active(self, x: Floats) -> Floats:
@@ -208,13 +230,47 @@ class Problem:
             return camera.copy()
         ground = self.lens(camera).on_plane(self.floor, 0.0)[:, :2]
         ground = np.nan_to_num(ground)
-        return np.concatenate([camera, _mean_by(ground[:, 0], self.link_x), _mean_by(ground[:, 1], self.link_y)])
+        return np.concatenate([camera, mean_by(ground[:, 0], self.link_x), mean_by(ground[:, 1], self.link_y)])
 
     def relinked(self, x: Floats, link_x: tuple[int, ...], link_y: tuple[int, ...]) -> tuple[Problem, Floats]:
         """The same problem with other shared coordinates, and the unknowns carried over."""
         corners = self.corners(x)
-        moved = np.concatenate([x[:CAMERA_UNKNOWNS], _mean_by(corners[:, 0], link_x), _mean_by(corners[:, 1], link_y)])
+        moved = np.concatenate([x[:CAMERA_UNKNOWNS], mean_by(corners[:, 0], link_x), mean_by(corners[:, 1], link_y)])
         return replace(self, link_x=link_x, link_y=link_y), moved
+
+
+@dataclass(frozen=True)
+class _View:
+    """The cameras of many vectors of unknowns in bulk: the same as `Problem.lens`, one after the other."""
+
+    perspective: bool
+    rotation: Floats
+    position: Floats
+    focal: Floats
+    principal: Floats
+
+    @staticmethod
+    def of(problem: Problem, many: Floats) -> _View:
+        rotation = _rotations(many)
+        distance = np.exp(np.minimum(12.0, many[:, DISTANCE]))
+        focal = np.exp(np.minimum(20.0, many[:, SCALE])) * (distance if problem.perspective else 1.0)
+        position = distance[:, None] * rotation[:, :, 2]
+        position[:, :2] += many[:, [AIM_X, AIM_Y]]
+        principal = problem.principal + many[:, [SHIFT_X, SHIFT_Y]] * float(problem.size.max())
+        return _View(problem.perspective, rotation, position, focal, principal)
+
+    def pixels(self, across: Floats, up: Floats) -> Floats:
+        """Pixels (B, N, 2) of points (B, N, 2) on the floor plane and (B, N) or (B, 1) above it; nan behind."""
+        flat = across - self.position[:, None, :2]
+        level = (up - self.position[:, 2:])[:, :, None]
+        local = flat @ self.rotation[:, :2, :] + level * self.rotation[:, 2:3, :]
+        seen = local[:, :, :2] * (1.0, -1.0) * self.focal[:, None, None]
+        if self.perspective:
+            with np.errstate(divide="ignore", invalid="ignore"):
+                depth = -local[:, :, 2:]
+                seen = np.where(depth > NEAR, seen / depth, np.nan)
+        result: Floats = self.principal[:, None] + seen
+        return result
 
 
 def _rotations(many: Floats) -> Floats:
@@ -234,44 +290,3 @@ def _rotations(many: Floats) -> Floats:
     first, second, third = (np.stack(column, axis=1) for column in columns)
     turned = (right[:, None] * first + up[:, None] * second, right[:, None] * second - up[:, None] * first, third)
     return np.stack(turned, axis=2)
-
-
-def _mean_by(values: Floats, link: tuple[int, ...]) -> Floats:
-    index = np.array(link)
-    mean: Floats = np.bincount(index, weights=values) / np.bincount(index)
-    return mean
-
-
-def square_links(
-    corners: Floats, pixels: Floats, degrees: float, slack_px: float
-) -> tuple[tuple[int, ...], tuple[int, ...], float]:
-    """Which corners share an x and which a y because a wall between them runs along an axis.
-
-    Args:
-        corners: (N, 2) metres; pixels: the same in the picture, for the length of walls as seen.
-        degrees: largest angle to the axis; for short walls an offset of `slack_px` counts too, up to 6 degrees.
-
-    Returns:
-        link_x, link_y as `Problem` wants them, and the part of the outline's length that runs along an axis.
-    """
-    count = len(corners)
-    link_x, link_y = list(range(count)), list(range(count))
-    total = along = 0.0
-    for i in range(count):
-        j = (i + 1) % count
-        step = corners[j] - corners[i]
-        length = float(np.hypot(*step))
-        seen = float(np.hypot(*(pixels[j] - pixels[i])))
-        limit = max(degrees, min(6.0, math.degrees(slack_px / max(1e-6, seen))))
-        total += length
-        for axis, link in ((0, link_x), (1, link_y)):
-            if abs(step[axis]) <= math.sin(math.radians(limit)) * length:
-                along += length
-                low, high = sorted((link[i], link[j]))
-                link[:] = [low if v == high else v for v in link]
-    return _compact(link_x), _compact(link_y), along / total if total > 0 else 0.0
-
-
-def _compact(link: list[int]) -> tuple[int, ...]:
-    numbers = {value: k for k, value in enumerate(sorted(set(link)))}
-    return tuple(numbers[value] for value in link)

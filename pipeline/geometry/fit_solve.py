@@ -4,15 +4,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
-from ..artifacts.analysis import Finding
-from ..artifacts.common import ImagePoint
-from .camera import CENTRE, GeometryError, Kind, image_points
-from .corners import Corners, check_corners, main_direction, similarity
+from .camera import Kind, Projector
+from .corners import main_direction, similarity
+from .fit_links import square_links
 from .fit_problem import (
     AIM_X,
     AIM_Y,
@@ -22,83 +20,24 @@ from .fit_problem import (
     ORTHO_DISTANCE,
     ROLL,
     SCALE,
+    SHIFT,
     TILT_X,
     TILT_Y,
     Assumptions,
     Problem,
-    square_links,
 )
+from .fit_sighting import Sighting, note, warning
 from .polygon import Floats
 
-ASSUMED_HEIGHT = 2.7
 ASSUMED_HEIGHT_SPREAD = 0.08
 GIVEN_HEIGHT_SPREAD = 0.01
 ASSUMED_FOCAL = 1.4  # of the picture's longer side: about 39 degrees, an ordinary lens
-CORNER_NOISE = 0.003  # of the picture's longer side: how far off corners are expected to be
 FLAT, DEEP = 1.01, 1.05  # wall tops larger than the floor by less: orthographic; by more: perspective
 SQUARE_DEGREES = 1.5
+EXPECTED_TILT_SPREAD, EXPECTED_FOCAL_SPREAD = 3.0, 0.1
+"""Degrees, and relative: how far a camera may differ from the one that is expected."""
 MAX_ROLL = 15.0  # a room that seems turned further has slanted walls instead
 SQUARE_SHARE = 0.6  # part of the outline along the axes from which a room counts as right-angled
-
-
-@dataclass
-class Sighting:
-    """What both entry points have in common, in pixels."""
-
-    corners: Corners
-    floor: Floats
-    tops: Floats | None
-    size: Floats
-    principal: Floats
-    height: float
-    height_given: bool
-    kind: Kind | None
-    findings: list[Finding]
-
-    @staticmethod
-    def of(
-        image_size: tuple[int, int],
-        floor: Sequence[ImagePoint],
-        tops: Sequence[ImagePoint] | None,
-        height: float | None,
-        kind: Kind | None,
-        principal: ImagePoint | None,
-    ) -> Sighting:
-        if min(image_size) < 2:
-            raise GeometryError("The picture is too small to measure in.")
-        corners = check_corners(image_points(floor), None if tops is None else image_points(tops))
-        unit = np.array(image_size, dtype=float) / 1000.0
-        findings = corners.findings
-        given = height is not None and math.isfinite(height) and 1.0 <= height <= 20.0
-        if height is not None and not given:
-            findings.append(
-                warning("height", f"A wall height of {height:g} m cannot be right; {ASSUMED_HEIGHT} m was assumed.")
-            )
-        centre = CENTRE if principal is None else (principal.x, principal.y)
-        return Sighting(
-            corners,
-            corners.floor * unit,
-            None if corners.tops is None else corners.tops * unit,
-            np.array(image_size, dtype=float),
-            np.array(centre) * unit,
-            float(height) if given and height is not None else ASSUMED_HEIGHT,
-            given,
-            kind,
-            findings,
-        )
-
-    @property
-    def noise(self) -> float:
-        """Pixels by which a corner is expected to be off."""
-        return CORNER_NOISE * float(self.size.max())
-
-
-def warning(about: str, message: str) -> Finding:
-    return Finding(about=about, message=message, severity="warning")
-
-
-def note(about: str, message: str) -> Finding:
-    return Finding(about=about, message=message)
 
 
 def turned_similarity(setup: Sighting, metric: Floats) -> tuple[float, float, float]:
@@ -142,18 +81,18 @@ def solve_kind(
 ) -> tuple[Problem, Floats]:
     problem = _first_problem(setup, kind, known, width, depth)
     x = _best_start(setup, problem)
-    if known is None and not _right_angled(setup, problem, x):
+    if known is None and not right_angled(setup, problem, x):
         # Nothing says which way such a room is turned: the picture's axes are the room's, and right angles are no cue.
         x[ROLL] = 0.0
         problem = replace(
             problem, assumed=replace(problem.assumed, square=math.inf), frozen=problem.frozen | {ROLL, *_tilt(setup)}
         )
         x = _best_start(setup, problem)
-        return _simplified(setup, *_with_measured_noise(problem, x))
-    problem, x = _with_measured_noise(problem, x)
+        return simplified(setup, *with_measured_noise(problem, x))
+    problem, x = with_measured_noise(problem, x)
     if known is None:
-        problem, x = _squared(setup, problem, x)
-    return _simplified(setup, problem, x)
+        problem, x = squared(setup, problem, x)
+    return simplified(setup, problem, x)
 
 
 def _tilt(setup: Sighting) -> set[int]:
@@ -163,13 +102,13 @@ def _tilt(setup: Sighting) -> set[int]:
 
 def _best_start(setup: Sighting, problem: Problem) -> Floats:
     """Best solution from all starts: a few steps from each, the rest from the most promising."""
-    starts = [problem.start(camera) for camera in _start_cameras(setup, problem)]
+    starts = [problem.start(camera) for camera in start_cameras(setup, problem)]
     if len(starts) > 1:
         starts = [min((problem.solve(start, 12, 1e-2) for start in starts), key=lambda s: s[1])[0]]
     return problem.solve(starts[0])[0]
 
 
-def _right_angled(setup: Sighting, problem: Problem, x: Floats) -> bool:
+def right_angled(setup: Sighting, problem: Problem, x: Floats) -> bool:
     share = square_links(problem.corners(x), setup.floor, 2 * SQUARE_DEGREES, 1.5 * setup.noise)[2]
     return share >= SQUARE_SHARE and abs(float(x[ROLL])) <= MAX_ROLL
 
@@ -188,7 +127,11 @@ def _first_problem(
         depth=depth,
         size_spread=0.002 if depth is None else 0.03,
     )
-    frozen: set[int] = set()
+    if setup.expected is not None and perspective == setup.expected.perspective:
+        assumed = replace(assumed, towards=_tilt_of(setup.expected), tilt=EXPECTED_TILT_SPREAD)
+        if perspective:
+            assumed = replace(assumed, focal=setup.expected.scale, focal_spread=EXPECTED_FOCAL_SPREAD)
+    frozen: set[int] = set(SHIFT)
     if bare:
         frozen.add(HEIGHT)
         if not perspective:
@@ -200,9 +143,17 @@ def _first_problem(
     )  # fmt: skip
 
 
-def _start_cameras(setup: Sighting, problem: Problem) -> list[Floats]:
+def _tilt_of(lens: Projector) -> tuple[float, float]:
+    """(tilt_x, tilt_y) in degrees, as `tilt_rotation` takes them, of a camera that looks down."""
+    x, y, z = -lens.rotation[:, 2]
+    angle, across = math.degrees(math.acos(max(-1.0, min(1.0, -z)))), math.hypot(x, y)
+    return (0.0, 0.0) if across < 1e-9 else (angle * y / across, angle * x / across)
+
+
+def start_cameras(setup: Sighting, problem: Problem) -> list[Floats]:
     """Start values of the camera unknowns: straight down, and tilted as far as the wall tops say."""
     camera = np.zeros(CAMERA_UNKNOWNS)
+    camera[[TILT_X, TILT_Y]] = problem.assumed.towards
     camera[HEIGHT] = math.log(setup.height)
     if problem.known is not None:
         scale, roll, _ = turned_similarity(setup, problem.known)
@@ -211,11 +162,11 @@ def _start_cameras(setup: Sighting, problem: Problem) -> list[Floats]:
         upright = setup.floor * (1.0, -1.0)
         direction, agreement = main_direction(upright)
         camera[ROLL] = -direction if agreement > 0.7 and ROLL not in problem.frozen else 0.0
-        scale = _seen_width(upright, -float(camera[ROLL])) / (problem.assumed.width or 1.0)
+        scale = _seen_scale(upright, -float(camera[ROLL]), problem.assumed)
     camera[SCALE] = math.log(scale)
     camera[DISTANCE] = math.log(problem.assumed.focal / scale if problem.perspective else ORTHO_DISTANCE)
     if setup.tops is None:
-        return [_aimed(problem, camera)]
+        return [aimed(problem, camera)]
     tops_scale, shift, _ = similarity(setup.floor, setup.tops)
     tilted = camera.copy()
     if problem.perspective:
@@ -231,42 +182,45 @@ def _start_cameras(setup: Sighting, problem: Problem) -> list[Floats]:
     tilted[TILT_X], tilted[TILT_Y] = angle[1], -angle[0]
     half = tilted.copy()
     half[[TILT_X, TILT_Y]] /= 2
-    return [_aimed(problem, start) for start in (camera, half, tilted)]
+    return [aimed(problem, start) for start in (camera, half, tilted)]
 
 
-def _seen_width(upright: Floats, degrees: float) -> float:
-    """Extent along the room's x axis in pixels, for a room that appears turned by so many degrees."""
+def _seen_scale(upright: Floats, degrees: float, assumed: Assumptions) -> float:
+    """Pixels for a metre, for a room that appears turned by so many degrees, from its width or its area."""
     angle = math.radians(degrees)
-    along = upright @ np.array((math.cos(angle), math.sin(angle)))
-    return float(np.ptp(along))
+    along = float(np.ptp(upright @ np.array((math.cos(angle), math.sin(angle)))))
+    if assumed.area is None:
+        return along / (assumed.width or 1.0)
+    across = float(np.ptp(upright @ np.array((-math.sin(angle), math.cos(angle)))))
+    return math.sqrt(along * across / assumed.area)
 
 
-def _aimed(problem: Problem, camera: Floats) -> Floats:
+def aimed(problem: Problem, camera: Floats) -> Floats:
     """Shift the camera over the floor so that the corners' mean comes to lie where it belongs."""
     ground = problem.lens(camera).on_plane(problem.floor, 0.0)[:, :2]
     wanted = np.zeros(2) if problem.known is None else problem.known.mean(axis=0)
-    aimed = camera.copy()
-    aimed[[AIM_X, AIM_Y]] += wanted - np.nan_to_num(np.nanmean(ground, axis=0))
-    return aimed
+    moved = camera.copy()
+    moved[[AIM_X, AIM_Y]] += wanted - np.nan_to_num(np.nanmean(ground, axis=0))
+    return moved
 
 
-def _spread(problem: Problem, x: Floats) -> float:
+def spread(problem: Problem, x: Floats) -> float:
     """Standard deviation of a measured coordinate, from the misfit and the degrees of freedom; nan without any."""
     free = problem.freedom(x)
     return math.sqrt(float((problem.pixel_errors(x) ** 2).sum()) / free) if free > 0 else math.nan
 
 
-def _with_measured_noise(problem: Problem, x: Floats) -> tuple[Problem, Floats]:
+def with_measured_noise(problem: Problem, x: Floats) -> tuple[Problem, Floats]:
     """Solve again with the noise that the misfit shows, so that exact corners are not bent by assumptions."""
     if problem.freedom(x) <= 0:
         return problem, x
     start = problem.sigma
     exact = replace(problem, sigma=0.01 * start)
     found = exact.solve(x, 30, 1e-3)[0]
-    if _spread(exact, found) < 0.05 * start:
+    if spread(exact, found) < 0.05 * start:
         return exact, exact.solve(found, 80, 1e-9)[0]
     for _ in range(3):
-        measured = min(1.5 * start, _spread(problem, x))
+        measured = min(1.5 * start, spread(problem, x))
         if 0.7 * problem.sigma < measured < 1.2 * problem.sigma:
             break
         problem = replace(problem, sigma=measured)
@@ -274,14 +228,14 @@ def _with_measured_noise(problem: Problem, x: Floats) -> tuple[Problem, Floats]:
     return problem, x
 
 
-def _squared(setup: Sighting, problem: Problem, x: Floats) -> tuple[Problem, Floats]:
+def squared(setup: Sighting, problem: Problem, x: Floats) -> tuple[Problem, Floats]:
     """Put walls that nearly run along an axis exactly on it, where the corners' noise allows that."""
     link_x, link_y, share = square_links(problem.corners(x), setup.floor, SQUARE_DEGREES, 1.5 * setup.noise)
     if share < SQUARE_SHARE or max(link_x) < 1 or max(link_y) < 1:
         return problem, x
     strict, start = replace(problem, sigma=setup.noise).relinked(x, link_x, link_y)
-    strict, found = _with_measured_noise(strict, strict.solve(start)[0])
-    free, bound = _spread(problem, x), _spread(strict, found)
+    strict, found = with_measured_noise(strict, strict.solve(start)[0])
+    free, bound = spread(problem, x), spread(strict, found)
     # The noise may look three times as large with the walls made straight: with few corners it is known no better.
     limit = 1.5 * setup.noise if math.isnan(free) else min(2 * setup.noise, max(3 * free, 0.1 * setup.noise))
     if math.isnan(bound):
@@ -289,7 +243,7 @@ def _squared(setup: Sighting, problem: Problem, x: Floats) -> tuple[Problem, Flo
     return (strict, found) if bound <= limit else (problem, x)
 
 
-def _simplified(setup: Sighting, problem: Problem, x: Floats) -> tuple[Problem, Floats]:
+def simplified(setup: Sighting, problem: Problem, x: Floats) -> tuple[Problem, Floats]:
     """No roll, and no tilt, where the corners fit as well without."""
     for unknowns, small in (((ROLL,), 1.0), ((TILT_X, TILT_Y), 1.5)):
         values = x[list(unknowns)]
