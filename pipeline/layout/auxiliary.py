@@ -51,7 +51,9 @@ def on_surface(
     # Beds, sofas and shelves carry things below their highest edge; the model's own height says so.
     stated = item.centre[2] - item.size[2] / 2
     floor_of_parent = parent.centre[2] - parent.size[2] / 2
-    if floor_of_parent + 0.05 < stated < base - 0.05:
+    # A throw over a duvet hangs down beside it, so it may begin as low.
+    lowest = floor_of_parent + (0.05 if parent.placement == "floor" else -0.05)
+    if lowest < stated < base - 0.05:
         base = stated
     proxy, findings = proxy_of(item, calibration, base)
     moved = _over(proxy, parent)
@@ -92,7 +94,7 @@ def on_wall(
     low = max(0.0, min(item.centre[2] - item.size[2] / 2, calibration.height - height))
     spot = along(wall, (item.centre[0], item.centre[1]))[0]
     findings: list[Finding] = []
-    if item.box is not None:
+    if item.box is not None and (calibration.trust is None or calibration.trust.evidence != "metres"):
         try:
             lifted = lift_on_wall(calibration.camera, item.box, start, end, (low, low + height), depth)
             place = lifted.along if inward > 0 else math.dist(start, end) - lifted.along

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from ..artifacts.analysis import Calibration, DetectedObject, Finding, SceneAnalysis
 from ..artifacts.common import ImageBox
 from ..artifacts.layout import CameraLine, Layout, ProxyLine
-from .fuse import fuse
+from .fuse import USUAL, fuse
 from .walls import shell
 
 MIN_SIDE = 0.02
@@ -70,7 +70,7 @@ def proxy_of(
     """One proxy by fusing an object's metres with its box; it never reaches through the ceiling."""
     base = item.centre[2] - item.size[2] / 2 if base_z is None else base_z
     side = max(_extent(calibration.floor))
-    fused, findings = fuse(item, calibration.camera, side, base)
+    fused, findings = fuse(item, calibration.camera, side, base, calibration.trust or USUAL)
     width, depth, height = (max(MIN_SIDE, v) if i < 2 else max(0.005, v) for i, v in enumerate(fused.size))
     top = calibration.height * MAX_HEIGHT_SHARE
     if base + height > top:

@@ -7,15 +7,32 @@ The vocabulary is closed; `INVERSE` names the relation that holds the other way 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
 
 from ..artifacts.analysis import Finding
-from ..artifacts.common import Metres2, Metres3, Placement
 from ..artifacts.graph import GraphEdge
 from ..artifacts.layout import WallLine
-from ..geometry.polygon import rectangle_corners
-from .walls import along
+from .standing import (
+    FACING_ANGLE,
+    FLAT,
+    FRONT_GAP,
+    NEAR_GAP,
+    SLACK,
+    WALL_GAP,
+    Placed,
+    against_walls,
+    corner_walls,
+    directed,
+    facing_error,
+    footprint_gap,
+    is_behind,
+    is_beside,
+    is_in_front_of,
+    is_under,
+    wall_gap,
+)
+
+__all__ = ["INVERSE", "Placed", "contradiction", "geometric_edges", "holds", "valid_edges", "with_inverses"]
 
 INVERSE = {
     "left_of": "right_of",
@@ -47,86 +64,101 @@ INVERSE = {
     "part_of": "contains",
     "contains": "part_of",
 }
-WALL_GAP = 0.18
-NEAR_GAP = 0.4
 NEIGHBOURS = 5
-
-
-@dataclass(frozen=True)
-class Placed:
-    """An object's oriented box, as relations need it; metres and degrees, frame of the room."""
-
-    id: str
-    centre: Metres3
-    size: Metres3
-    yaw: float
-    placement: Placement
-    parent: str | None
-
-    @property
-    def corners(self) -> list[Metres2]:
-        """The footprint's corners."""
-        return [(float(x), float(y)) for x, y in rectangle_corners(self.centre[:2], self.size[:2], self.yaw)]
-
-
-def wall_gap(item: Placed, wall: WallLine) -> float:
-    """Free space between a footprint and a wall's face, metres; infinite beside the wall's ends."""
-    length = math.dist(wall.start, wall.end)
-    spots = [along(wall, corner) for corner in item.corners]
-    low, high = min(t for t, _ in spots), max(t for t, _ in spots)
-    if min(high, length) - max(low, 0.0) < 0.3 * max(1e-6, high - low):
-        return math.inf
-    half = wall.thickness / 2 if wall.partition else 0.0
-    distances = [off for _, off in spots]
-    if wall.partition and max(distances) < 0:
-        return -max(distances) - half
-    return min(distances) - half if wall.partition else min(distances)
-
-
-def against_walls(item: Placed, walls: Sequence[WallLine], gap: float = WALL_GAP) -> list[str]:
-    """Ids of the walls that a footprint stands at, nearest first."""
-    found = [(abs(g), w.id) for w in walls if (g := wall_gap(item, w)) < gap and g > -gap]
-    return [name for _, name in sorted(found)]
-
-
-def footprint_gap(a: Placed, b: Placed) -> float:
-    """Distance between two footprints (0 when they touch or overlap), from their bounding rectangles; metres."""
-    ax, ay = zip(*a.corners, strict=True)
-    bx, by = zip(*b.corners, strict=True)
-    dx = max(min(bx) - max(ax), min(ax) - max(bx), 0.0)
-    dy = max(min(by) - max(ay), min(ay) - max(by), 0.0)
-    return math.hypot(dx, dy)
+FAR = 0.6
+"""What stands further than this from a wall, or from what it is said to be under, metres, is not there."""
 
 
 def geometric_edges(items: Sequence[Placed], walls: Sequence[WallLine]) -> list[GraphEdge]:
-    """Wall, corner, direction, nearness and support edges, each once; `with_inverses` adds the other direction."""
+    """All edges that geometry decides, each once; `with_inverses` adds the other direction.
+
+    Walls and corners; directions and what has a front between nearest neighbours; nearness; what is on, or under, what.
+    """
     edges: list[GraphEdge] = []
     floor = [i for i in items if i.placement == "floor"]
     for item in floor:
-        touching = against_walls(item, walls)
-        edges += [_edge(item.id, "against_wall", wall) for wall in touching]
-        if len(touching) >= 2:
-            edges += [_edge(item.id, "in_corner", wall) for wall in touching[:2]]
+        edges += [_edge(item.id, "against_wall", wall) for wall in against_walls(item, walls)]
+        edges += [_edge(item.id, "in_corner", wall) for wall in corner_walls(item, walls)]
     for item in floor:
         nearest = sorted((math.dist(o.centre[:2], item.centre[:2]), n) for n, o in enumerate(floor) if o.id != item.id)
-        for other in (floor[n] for _, n in nearest[:NEIGHBOURS]):
-            edges += _direction(item, other)
-            if item.id < other.id and footprint_gap(item, other) <= NEAR_GAP:
-                edges.append(_edge(item.id, "near", other.id))
+        edges += _between(item, [floor[n] for _, n in nearest[:NEIGHBOURS]])
     ids = {i.id for i in items}
     edges += [_edge(i.id, "on", i.parent) for i in items if i.placement == "surface" and i.parent in ids]
+    return edges + _covered(items)
+
+
+def _between(item: Placed, nearest: Sequence[Placed]) -> list[GraphEdge]:
+    """Edges of one thing on the floor with its neighbours."""
+    edges: list[GraphEdge] = []
+    for other in nearest:
+        edges += [_edge(item.id, name, other.id) for name in ("left_of", "below") if directed(name, item, other)]
+        # Symmetric ones are found from both sides; each is kept from the side whose id comes first.
+        if item.id < other.id and footprint_gap(item, other) <= NEAR_GAP:
+            edges.append(_edge(item.id, "near", other.id))
+            if is_beside(item, other):
+                edges.append(_edge(item.id, "beside", other.id))
+        if is_in_front_of(other, item):
+            edges.append(_edge(other.id, "in_front_of", item.id))
+        if is_behind(other, item):
+            edges.append(_edge(other.id, "behind", item.id))
+    looked_at = [o for o in nearest if o.size[2] >= FLAT and _looks_at(item, o)]
+    if looked_at:
+        edges.append(_edge(item.id, "faces", min(looked_at, key=lambda o: footprint_gap(item, o)).id))
     return edges
 
 
-def _direction(item: Placed, other: Placed) -> list[GraphEdge]:
-    dx, dy = other.centre[0] - item.centre[0], other.centre[1] - item.centre[1]
-    least = max(0.2, 0.25 * min(max(item.size[:2]), max(other.size[:2])))
-    result = []
-    if dx >= least:
-        result.append(_edge(item.id, "left_of", other.id))
-    if dy >= least:
-        result.append(_edge(item.id, "below", other.id))
-    return result
+def _looks_at(item: Placed, other: Placed) -> bool:
+    return item.fronted and footprint_gap(item, other) <= FRONT_GAP and facing_error(item, other) <= FACING_ANGLE
+
+
+def _covered(items: Sequence[Placed]) -> list[GraphEdge]:
+    """What lies under what without carrying it: a rug under a bed, a table under a pendant lamp."""
+    edges: list[GraphEdge] = []
+    for low in items:
+        for high in items:
+            if high.placement != "wall" and is_under(low, high):
+                edges.append(_edge(low.id, "under", high.id))
+    return edges
+
+
+def holds(edge: GraphEdge, items: Mapping[str, Placed], walls: Sequence[WallLine]) -> bool | None:
+    """Whether a relation still holds where things are now, with a little slack; None when geometry cannot tell."""
+    item, other = items.get(edge.source), items.get(edge.target)
+    if item is None:
+        return None
+    if edge.relation == "against_wall":
+        return edge.target in against_walls(item, walls, WALL_GAP * SLACK)
+    if edge.relation == "in_corner":
+        return edge.target in corner_walls(item, walls, WALL_GAP * SLACK)
+    if other is None:
+        return None
+    if edge.relation in ("left_of", "below"):
+        return directed(edge.relation, item, other, SLACK)
+    if edge.relation == "near":
+        return footprint_gap(item, other) <= NEAR_GAP * SLACK
+    if edge.relation == "faces":
+        # What the model says of use is looser than what geometry finds: a chair at a corner of its table faces it.
+        return facing_error(item, other) <= FACING_ANGLE * (SLACK if edge.origin == "geometry" else 2.0)
+    if edge.relation == "on" and item.placement == "surface":
+        return item.parent == other.id
+    return None
+
+
+def contradiction(edge: GraphEdge, items: Mapping[str, Placed], walls: Mapping[str, WallLine]) -> str | None:
+    """What geometry has against a relation that the model claims, None when nothing."""
+    item, other = items.get(edge.source), items.get(edge.target)
+    wall = walls.get(edge.target)
+    if item is not None and wall is not None and edge.relation == "against_wall" and item.placement == "floor":
+        gap = wall_gap(item, wall)
+        return None if abs(gap) <= FAR else "it stands away from that wall"
+    if item is None or other is None or "floor" not in (item.placement, other.placement):
+        return None
+    if edge.relation in ("under", "beside", "on") and footprint_gap(item, other) > FAR:
+        return f"it is {footprint_gap(item, other):.1f} m away from it"
+    if edge.relation in ("in_front_of", "behind") and other.fronted:
+        opposite = is_behind if edge.relation == "in_front_of" else is_in_front_of
+        return "it is on its other side" if opposite(item, other) else None
+    return None
 
 
 def _edge(source: str, relation: str, target: str | None) -> GraphEdge:

@@ -9,7 +9,7 @@ from typing import Any
 from ..analysis.rescale import Similarity, rescaled_edit, rescaled_line, rescaled_text
 from ..artifacts.analysis import Calibration, SceneAnalysis
 from ..artifacts.layout import CameraLine, Layout, LayoutProgram, Line, ProxyLine, RoomLine
-from ..program.limits import DEFAULT_LIMITS
+from ..program.limits import FINISHED_ROOM_LIMITS
 from ..program.lines import layout_statements, name_of
 from ..program.parse_safe import parse
 from ..program.rewrite import rewrite_lines
@@ -40,7 +40,7 @@ def follow_shell(
     rise = new[1].height - old[1].height * change.factor
 
     def follow(text: str) -> str:
-        present = {_key(s.line) for s in layout_statements(parse(text.removeprefix("\ufeff"), DEFAULT_LIMITS))}
+        present = {_key(s.line) for s in layout_statements(parse(text.removeprefix("\ufeff"), FINISHED_ROOM_LIMITS))}
         added = [line for key, line in after.items() if key not in before and key not in present]
 
         def changed(line: Line) -> Line | None:

@@ -13,7 +13,7 @@ from itertools import combinations
 
 from ..geometry.placement import Rect, penetration
 
-MOST = 0.15
+MOST = 0.06
 """At most this part of an extent is trimmed; what still overlaps is for the solver to move."""
 
 

@@ -13,18 +13,25 @@ from typing import Any
 from pydantic import BaseModel
 
 from ..analysis.again import described_anew, surroundings
-from ..analysis.calibrate import calibrate
+from ..analysis.calibrate import calibrate, uncalibrated
 from ..analysis.clean import clean_analysis
 from ..analysis.correct import Corrected, Known, correct_found
+from ..analysis.doubts import asked as questions
+from ..analysis.doubts import doubts
+from ..analysis.edges import refined_yaws
+from ..analysis.facing import checked_facings
 from ..analysis.frames import between
 from ..analysis.identity import found_again, keep_ids, normal
-from ..analysis.look import enlarged, numbered_boxes, quarters
+from ..analysis.look import dense_surfaces, enlarged, numbered_boxes, quarters
 from ..analysis.merge import merge_second_look
+from ..analysis.reliability import learn_trust
+from ..analysis.residuals import residual
 from ..artifacts.analysis import Calibration, DetectedObject, Finding, SceneAnalysis
 from ..artifacts.common import ImageBox
 from ..artifacts.corrections import Corrections, Found, Rescaled
 from ..artifacts.layout import LayoutProgram
 from ..artifacts.replies import AnalysisReply, SecondLookReply
+from ..artifacts.trust import Sources
 from ..errors import RoomError
 from ..layout.hand import apply_hand_edits
 from ..layout.reshell import follow_scale, follow_shell
@@ -33,7 +40,7 @@ from .base import Reads, Stage, View
 from .wishes import Ask, Build, Picture, Request, StageRun, Tell, Wish
 
 ID = "s01_analysis"
-CROP_NAMES = "picture 2 top left, picture 3 top right, picture 4 bottom left, picture 5 bottom right"
+CROP_NAMES = ("top left", "top right", "bottom left", "bottom right")
 MOST_AGAIN = 8
 """Objects that one request can describe anew: each has an enlarged picture of its own."""
 
@@ -55,17 +62,40 @@ def _anew(view: View) -> Generator[Wish, Any, Found]:
     picture = view.reference
     yield Tell("Asking what is in the picture", 1, 3)
     [reply] = yield Ask((_first_request(view),))
-    analysis = clean_analysis(reply, (picture.width, picture.height))
-    yield Tell("Looking a second time for what was missed", 2, 3)
-    crops = quarters(analysis)
-    [second] = yield Ask((_second_request(view, analysis, crops),))
-    merged = merge_second_look(analysis, second, [None, *crops])
+    stated = merged = clean_analysis(reply, (picture.width, picture.height))
+    first = None
+    if view.settings.get("second_look") != "off":
+        # Fitted already now, so that what contradicts itself can be asked about; and what is no room is refused here.
+        first = _fitted(view, stated)
+        yield Tell("Looking a second time for what was missed", 2, 3)
+        crops = quarters(stated)
+        surfaces = dense_surfaces(stated.objects, crops[0])
+        [second] = yield Ask((_second_request(view, stated, first, crops, surfaces),))
+        merged = merge_second_look(stated, second, [None, *crops, *(part for _, part in surfaces)])
     yield Tell("Fitting the camera", 3, 3)
     before = view.recall(Found)
     if before is not None:
         merged = keep_ids(before.analysis, merged)
-    aligned, calibration = calibrate(merged)
-    return Found(analysis=aligned, calibration=calibration)
+    return first if first is not None and merged == stated else _fitted(view, merged)
+
+
+def _fitted(view: View, stated: SceneAnalysis) -> Found:
+    """The analysis in the frame of the fitted floor, its directions checked, and what it tells of its own errors."""
+    fit = uncalibrated if view.settings.get("calibration") == "off" else calibrate
+    analysis, calibration = fit(stated)
+    analysis = checked_facings(analysis, calibration)
+    sources = _sources(view)
+    if sources != "metres":
+        analysis = refined_yaws(analysis, calibration, view.reference.pixels())
+    residuals = [r for o in analysis.objects if (r := residual(o, calibration.camera)) is not None]
+    trust = learn_trust(analysis, calibration, sources)
+    return Found(analysis=analysis, calibration=calibration.model_copy(update={"residuals": residuals, "trust": trust}))
+
+
+def _sources(view: View) -> Sources:
+    """Which measurements placements are made from: both, unless it is tried out what one alone is worth."""
+    wanted = view.settings.get("evidence")
+    return "metres" if wanted == "metres" else "boxes" if wanted == "boxes" else "both"
 
 
 def _again(view: View) -> Generator[Wish, Any, Found]:
@@ -143,10 +173,15 @@ def _first_request(view: View) -> Request:
     )
 
 
-def _second_request(view: View, analysis: SceneAnalysis, crops: list[ImageBox]) -> Request:
+def _second_request(
+    view: View, stated: SceneAnalysis, fitted: Found, crops: list[ImageBox], surfaces: list[tuple[str, ImageBox]]
+) -> Request:
+    """Asked in the metres that the model spoke in, so that both answers are of one measure."""
     picture = view.reference
-    images = [Picture("found", numbered_boxes(picture, analysis.objects))]
-    images += [Picture(f"part {n}", enlarged(picture, crop)) for n, crop in enumerate(crops, 2)]
+    names = [*CROP_NAMES, *(f"around {name}" for name, _ in surfaces)]
+    parts = [*crops, *(part for _, part in surfaces)]
+    images = [Picture("found", numbered_boxes(picture, stated.objects))]
+    images += [Picture(f"part {n}", enlarged(picture, part)) for n, part in enumerate(parts, 2)]
     return Request(
         key="01_second_look",
         prompt="01_second_look",
@@ -154,10 +189,11 @@ def _second_request(view: View, analysis: SceneAnalysis, crops: list[ImageBox]) 
         values={
             "width": str(picture.width),
             "height": str(picture.height),
-            "crops": CROP_NAMES,
-            "found": _list(analysis.objects) + view.noted(o.id for o in analysis.objects),
-            "room_width": f"{analysis.room_size[0]:.2f}",
-            "room_depth": f"{analysis.room_size[1]:.2f}",
+            "crops": ", ".join(f"picture {n} {name}" for n, name in enumerate(names, 2)),
+            "found": _list(stated.objects) + view.noted(o.id for o in stated.objects),
+            "doubts": questions(doubts(stated, fitted.analysis, fitted.calibration)) or "none",
+            "room_width": f"{stated.room_size[0]:.2f}",
+            "room_depth": f"{stated.room_size[1]:.2f}",
         },
         images=tuple(images),
     )
@@ -207,7 +243,7 @@ STAGE = Stage(
     reads=(),
     writes=(SceneAnalysis, Calibration),
     run=run,
-    settings=("notes",),
+    settings=("notes", "evidence", "second_look", "calibration"),
     partial=True,
     recalls=(Reads(Found), Reads(SceneAnalysis), Reads(Calibration), Reads(LayoutProgram)),
 )

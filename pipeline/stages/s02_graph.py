@@ -9,7 +9,7 @@ from ..artifacts.graph import GraphEdge, GraphNode, MinorObjects, SceneGraph
 from ..artifacts.layout import WallLine
 from ..artifacts.replies import GraphReply
 from ..layout.initial import is_major
-from ..layout.relations import Placed, geometric_edges, valid_edges, with_inverses
+from ..layout.relations import Placed, contradiction, geometric_edges, valid_edges, with_inverses
 from ..layout.walls import shell
 from .base import Reads, Stage, View
 from .wishes import Ask, Picture, Request, StageRun, Tell
@@ -71,15 +71,33 @@ def make_graph(
         for o in analysis.objects
         if o.parent
     ]
-    geometric = geometric_edges([_placed(o) for o in analysis.objects], walls)
-    said = [GraphEdge(source=r.source, relation=r.relation, target=r.target, origin="model") for r in reply.relations]
+    placed = {o.id: _placed(o) for o in analysis.objects}
+    geometric = geometric_edges(list(placed.values()), walls)
+    said, unlikely = _believed(reply, placed, {w.id: w for w in walls})
     unknown = [
         Finding(about=i, message=f"Facts were given on {i!r}, which does not exist.")
         for i in facts
         if i not in {n.id for n in nodes}
     ]
     kept, findings = valid_edges([*edges, *geometric, *said], {n.id for n in nodes}, geometric)
-    return SceneGraph(nodes=nodes, edges=with_inverses(kept), findings=[*unknown, *findings])
+    return SceneGraph(nodes=nodes, edges=with_inverses(kept), findings=[*unknown, *unlikely, *findings])
+
+
+def _believed(
+    reply: GraphReply, placed: dict[str, Placed], walls: dict[str, WallLine]
+) -> tuple[list[GraphEdge], list[Finding]]:
+    """The relations that the model claims and geometry does not speak against."""
+    edges: list[GraphEdge] = []
+    findings: list[Finding] = []
+    for r in reply.relations:
+        edge = GraphEdge(source=r.source, relation=r.relation, target=r.target, origin="model")
+        against = contradiction(edge, placed, walls)
+        if against is None:
+            edges.append(edge)
+        else:
+            said = f"It is said to be {r.relation.replace('_', ' ')} {r.target}, but {against}; dropped."
+            findings.append(Finding(about=r.source, message=said))
+    return edges, findings
 
 
 def minor_objects(analysis: SceneAnalysis) -> MinorObjects:
@@ -98,7 +116,8 @@ def _carried(item: DetectedObject) -> str:
 
 
 def _placed(item: DetectedObject) -> Placed:
-    return Placed(item.id, item.centre, item.size, item.yaw, item.placement, item.parent)
+    fronted = bool(item.front) and item.shape != "round"
+    return Placed(item.id, item.centre, item.size, item.yaw, item.placement, item.parent, fronted)
 
 
 STAGE = Stage(

@@ -6,7 +6,7 @@ Every layout that is critiqued or kept was rendered and measured. The best itera
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Generator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -18,11 +18,14 @@ from ..errors import RoomError
 from ..layout.hand import apply_hand_edits, name_now, place_edited
 from ..layout.initial import Evidence, first_layout, is_major
 from ..layout.overlay import draw_outlines
+from ..layout.past import Past
 from ..layout.pins import pinned
-from ..layout.placed import tucked_pairs
-from ..layout.revise import Sanitised, revise, sanitise
-from ..layout.score import Expected, measure, with_model
-from ..layout.solve import solve
+from ..layout.placed import companions, tucked_pairs
+from ..layout.revise import revise
+from ..layout.sanitise import Sanitised, sanitise
+from ..layout.score import WEIGHTS, Expected, measure, with_model
+from ..layout.solve import Ties, solve
+from ..layout.spread import placement_spread
 from ..program.lines import parse_layout, print_layout
 from .base import Reads, Stage, View
 from .wishes import Ask, Build, Picture, Render, Request, StageRun, Tell, Wish
@@ -30,8 +33,10 @@ from .wishes import Ask, Build, Picture, Render, Request, StageRun, Tell, Wish
 ID = "s03_layout"
 T_MAX = 5
 TARGET = 0.97
-GAIN = 0.002
-"""A revision that brings less than this is no better."""
+GAIN = 0.013
+"""A round is better when what it brings is worth one thing that covers its place in the picture by so much more."""
+HARM = 0.25
+"""An edit that alone loses more than this part of such a gain is not made."""
 UNMEASURED = frozenset({"turn", "recategorise", "remove"})
 """Boxes look the same from above whichever way they face and whatever they are called: here the critic's word counts."""
 
@@ -53,6 +58,8 @@ class _Loop:
 
     Attributes:
         frozen: ids that stay as they are; chosen: ids that are done anew, None for all.
+        swings: how doors open, by id; fronted: ids of what has a front that was recognised.
+        past: what the critic asked for so far; None where it is not to know of it.
     """
 
     view: View
@@ -61,13 +68,17 @@ class _Loop:
     t_max: int
     target: float
     frozen: frozenset[str]
-    chosen: frozenset[str] | None = None
+    chosen: frozenset[str] | None
+    swings: Mapping[str, str]
+    fronted: frozenset[str]
     iterations: list[Iteration] = field(default_factory=list)
     best: _State | None = None
+    past: Past = field(default_factory=Past)
 
     def run(self, layout: Layout, evidence: Evidence) -> Generator[Wish, Any, _State]:
         """Render, measure, critique and revise; returns the best state."""
         asked: list[LayoutEdit] = []
+        last = False
         for number in range(self.t_max + 1):
             layout, notes = self._solved(layout, evidence)
             text = print_layout(layout)
@@ -75,21 +86,23 @@ class _Loop:
             yield Build(text)
             score, problems = measure(layout, self.calibration.camera, self._expected(layout, evidence))
             state = _State(number, layout, evidence, score, notes)
-            gain = self._gain(state)
-            better = gain > GAIN
-            if better or (gain >= -GAIN and any(e.op in UNMEASURED for e in asked)):
+            gain, least = self._gain(state), self._least(layout, evidence)
+            better = gain > least
+            if better or (gain >= -least and any(e.op in UNMEASURED for e in asked)):
                 self.best = state
-            if not better or number == self.t_max:
+            if not better or last or number == self.t_max:
                 self._note(state, text, None, None)
                 break
             rendered = yield Render(self.calibration.camera, labels=True)
             [reply] = yield Ask((self._request(state, rendered, problems),))
-            wanted = sanitise(reply, layout, evidence, self.calibration, self.view.locked, self.chosen)
+            wanted = self._wanted(reply, layout, evidence)
             state = _State(number, layout, evidence, with_model(score, reply.score), notes)
             self.best = state
             self._note(state, text, reply, wanted)
-            if not wanted.edits or state.score.total >= self.target:
+            if not wanted.edits:
                 break
+            # Good enough: what was asked for is still done and measured, but nothing more is asked.
+            last = state.score.total >= self.target
             layout, evidence, asked = self._revised(layout, wanted), wanted.evidence, wanted.edits
         assert self.best is not None
         best_text = print_layout(self.best.layout)
@@ -98,12 +111,46 @@ class _Loop:
             yield Build(best_text)
         return self.best
 
+    def _least(self, layout: Layout, evidence: Evidence) -> float:
+        """The gain from which on a layout counts as better; one thing weighs less where there are many."""
+        return GAIN * WEIGHTS["boxes"] / max(1, len(self._expected(layout, evidence).boxes))
+
     def _gain(self, state: _State) -> float:
         """How much better a layout is than the best so far, both measured against what is known by now."""
         if self.best is None:
             return 1.0
-        before, _ = measure(self.best.layout, self.calibration.camera, self._expected(self.best.layout, state.evidence))
-        return state.score.measured - before.measured
+        return state.score.measured - self._measured(self.best.layout, state.evidence)
+
+    def _measured(self, layout: Layout, evidence: Evidence) -> float:
+        return measure(layout, self.calibration.camera, self._expected(layout, evidence))[0].measured
+
+    def _wanted(self, reply: CritiqueReply, layout: Layout, evidence: Evidence) -> Sanitised:
+        """What of the critic's wishes is done: not against evidence, and not to the measured harm of the rest."""
+        past = self.past if self._remembers else Past()
+        wanted = sanitise(reply, layout, evidence, self.calibration, self.view.locked, self.chosen, past)
+        edits, refused = list(wanted.edits), list(wanted.refused)
+        kept = evidence
+        for identifier in dict.fromkeys(e.id for e in wanted.edits):
+            own = [e for e in edits if e.id == identifier]
+            item = wanted.evidence.objects.get(identifier)
+            alone = evidence.without(identifier) if item is None else evidence.with_object(item)
+            if all(e.op == "move" for e in own) and self._harms(layout, Sanitised(own, alone, [])):
+                edits = [e for e in edits if e.id != identifier]
+                refused.append(Finding(about=identifier, message="Moved so, the room measured worse; left as it is."))
+            else:
+                kept = kept.without(identifier) if item is None else kept.with_object(item)
+        self.past.note(edits, refused)
+        return Sanitised(edits, kept, refused)
+
+    def _harms(self, layout: Layout, alone: Sanitised) -> bool:
+        """Whether one thing's edits alone make the layout measurably worse, against what is known with them."""
+        trial, _ = self._solved(self._revised(layout, alone), alone.evidence)
+        least = HARM * self._least(layout, alone.evidence)
+        return self._measured(trial, alone.evidence) < self._measured(layout, alone.evidence) - least
+
+    @property
+    def _remembers(self) -> bool:
+        return self.view.settings.get("memory", "on") != "off"
 
     def _revised(self, layout: Layout, wanted: Sanitised) -> Layout:
         """The layout after the critic's edits; what the critic adds again is edited again as the artist edited it."""
@@ -117,14 +164,24 @@ class _Loop:
 
     def _solved(self, layout: Layout, evidence: Evidence) -> tuple[Layout, list[Finding]]:
         confidence = {i: o.confidence for i, o in evidence.objects.items()}
-        return solve(layout, tucked_pairs(self.graph.edges, layout.proxies), self.frozen, confidence)
+        edges = self.graph.edges
+        ties = Ties(
+            spread=placement_spread(evidence.objects.values(), self.calibration),
+            leaning=frozenset(
+                (e.source, e.target) for e in edges if e.relation == "against_wall" and e.origin == "model"
+            ),
+            companions=companions(edges, layout.proxies),
+            swings=self.swings,
+        )
+        return solve(layout, tucked_pairs(edges, layout.proxies), self.frozen, confidence, ties)
 
     def _expected(self, layout: Layout, evidence: Evidence) -> Expected:
         ids = [o.id for o in evidence.objects.values() if is_major(o)]
         boxes = {i: b for i in ids if (b := evidence.box(i)) is not None and i not in self.view.locked}
         tucked = tucked_pairs(self.graph.edges, layout.proxies)
         names = (name_now(self.view.hand_edits, i) for i in ids)
-        return Expected(tuple(name for name in names if name is not None), boxes, self.graph.edges, tucked)
+        there = tuple(name for name in names if name is not None)
+        return Expected(there, boxes, self.graph.edges, tucked, self.swings, self.fronted)
 
     def _request(self, state: _State, rendered: bytes, problems: list[str]) -> Request:
         picture = self.view.reference.for_model()
@@ -140,11 +197,12 @@ class _Loop:
             chosen = self.chosen
             problems = [p for p in problems if not chosen.isdisjoint(p.split())]
             said = "\n\nOnly these are judged now; everything else stays as it is." + said
+        known = f"Measured problems: {'; '.join(problems[:20]) or 'none'}\n{self.past.told()}".rstrip()
         return Request(
             key=f"03_critique/{state.number}",
             prompt="03_critique",
             reply=CritiqueReply,
-            values={"layout": "\n".join(lines) + said, "problems": "; ".join(problems[:20]) or "none"},
+            values={"layout": "\n".join(lines) + said, "known": known + "\n\n" if self._remembers else ""},
             images=(Picture("reference", picture), Picture("layout", rendered), Picture("overlay", overlay)),
         )
 
@@ -177,7 +235,9 @@ def run(view: View) -> StageRun:
     elif standing is not None:
         layout = pinned(layout, standing, view.locked, view.names(analysis).values())
     target = view.number("target") or TARGET
-    loop = _Loop(view, calibration, graph, _rounds(view), target, frozen, chosen)
+    swings = {a.id: a.swing for a in analysis.architecture if a.kind == "door"}
+    fronted = frozenset(o.id for o in analysis.objects if o.front)
+    loop = _Loop(view, calibration, graph, _rounds(view), target, frozen, chosen, swings, fronted)
     best = yield from loop.run(layout, evidence)
     program = LayoutProgram(
         text=print_layout(best.layout),
@@ -230,8 +290,11 @@ def _kept(view: View, layout: Layout) -> LayoutProgram:
 
 def _rounds(view: View) -> int:
     """The most critiques that the artist allows, 0 to T_MAX."""
-    text = view.settings.get("iterations", "").strip()
-    return min(T_MAX, int(text)) if text.isdigit() else T_MAX
+    for name in ("rounds", "iterations"):
+        text = view.settings.get(name, "").strip()
+        if text.isdigit():
+            return min(T_MAX, int(text))
+    return T_MAX
 
 
 STAGE = Stage(
@@ -240,7 +303,7 @@ STAGE = Stage(
     reads=(Reads(SceneAnalysis), Reads(Calibration), Reads(SceneGraph)),
     writes=(LayoutProgram,),
     run=run,
-    settings=("iterations", "target"),
+    settings=("iterations", "target", "rounds", "memory"),
     notes=True,
     partial=True,
     recalls=(Reads(LayoutProgram, (ID,)),),

@@ -14,6 +14,7 @@ from ..layout import auxiliary as place
 from ..layout.hand import apply_hand_edits, name_now, place_edited
 from ..layout.initial import is_major
 from ..layout.pins import pinned, with_known_parent
+from ..layout.score import with_support
 from ..layout.solve import settle_minor
 from ..program.lines import parse_layout, print_layout
 from .base import Reads, Stage, View
@@ -165,6 +166,7 @@ def run(view: View) -> StageRun:
         update={
             "text": text,
             "stage": ID,
+            "score": with_support(before.score, layout),
             "ledger": ledger,
             "findings": [*placing.findings, *unusable, *(f for f in late if f not in unusable)],
             "iterations": [],

@@ -6,6 +6,7 @@ import numpy as np
 from code_as_room.pipeline.artifacts.analysis import DetectedObject, SceneAnalysis
 from code_as_room.pipeline.artifacts.camera import CameraModel
 from code_as_room.pipeline.artifacts.common import ImageBox
+from code_as_room.pipeline.artifacts.trust import Trust
 from code_as_room.pipeline.geometry.footprint import lift_box
 from code_as_room.pipeline.geometry.polygon import footprint_iou, rectangle_corners
 from code_as_room.pipeline.layout.fuse import fuse, straighten
@@ -18,6 +19,9 @@ def test_exact_measurements_stay_exact(analysis: SceneAnalysis, camera: CameraMo
         np.testing.assert_allclose(fused.centre, item.centre, atol=1e-4)
         np.testing.assert_allclose(fused.size, item.size, rtol=1e-3, atol=1e-4)
         assert not findings and fused.iou is not None and fused.iou > 0.995
+
+
+KNOWN = Trust(box_sigma=6.0, centre_sigma=0.06 / 4.6, size_sigma=0.08, height_sigma=0.2)
 
 
 def noisy(item: DetectedObject, rng: np.random.Generator) -> DetectedObject:
@@ -36,7 +40,7 @@ def test_fused_is_better_than_metres_and_than_boxes(analysis: SceneAnalysis, cam
             seen = noisy(true, rng)
             assert seen.box is not None
             outline = rectangle_corners(true.centre, true.size, true.yaw)
-            fused, _ = fuse(seen, camera, 4.6, 0.0)
+            fused, _ = fuse(seen, camera, 4.6, 0.0, KNOWN)
             lifted = lift_box(camera, seen.box, 0.0, seen.size[2], seen.yaw, seen.size)
             scores.append(
                 [

@@ -50,7 +50,7 @@ def test_locked_proxies_stay_bit_exact_and_others_give_way() -> None:
 
 
 def test_what_nearly_touches_a_wall_stands_flush_and_what_does_not_is_left() -> None:
-    near, far = proxy("near", -2.0, -1.64), proxy("far", 0.0, -1.5)
+    near, far = proxy("near", -2.0, -1.67), proxy("far", 0.0, -1.5)
     solved, _ = solve(layout(near, far), NONE, frozenset(), {})
     assert abs(solved.proxies[0].centre[1] - (-1.7)) < 1e-6
     assert solved.proxies[1].centre == far.centre
