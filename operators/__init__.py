@@ -16,6 +16,7 @@ def _classes() -> tuple[type, ...]:
     from . import (
         connection_ops,
         consent,
+        detail_ops,
         fitted_view,
         hand_ops,
         journal_ops,
@@ -41,6 +42,7 @@ def _classes() -> tuple[type, ...]:
         rounds,
         result_ops,
         program_ops,
+        detail_ops,
         hand_ops,
         journal_ops,
         overlay,

@@ -140,7 +140,9 @@ def _finish(run: Run, folder: Path) -> None:
     program = run.memory.latest(LayoutProgram)
     if program is not None:
         states = [entry.state for entry in program.ledger]
-        counts = ", ".join(f"{states.count(s)} {s}" for s in ("placed", "deferred", "dropped") if s in states)
+        counts = ", ".join(
+            f"{states.count(s)} {s}" for s in ("detailed", "placed", "deferred", "dropped") if s in states
+        )
         print(f"Objects: {len(states)} detected: {counts or 'none'}. Layout score {program.score.total:.2f}.")
     print(f"Made by: {run.client.describes}")
     print(f"Results in {folder}:")

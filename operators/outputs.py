@@ -19,8 +19,9 @@ from ..pipeline.errors import OutputError, RoomError
 from ..pipeline.layout.hand import apply_hand_edits
 from ..pipeline.layout.overlay import draw_outlines
 from ..pipeline.memory import Memory, dump_memory
+from ..pipeline.objects.text import relaid
 from ..pipeline.program.assemble import assemble
-from ..pipeline.program.lines import parse_layout, print_layout
+from ..pipeline.program.lines import parse_layout
 from ..pipeline.report import make_report
 from ..pipeline.run import Run
 
@@ -42,7 +43,7 @@ def write_outputs(run: Run, folder: Path) -> list[Path]:
     if not backend.program_text():
         # A finished run that was resumed from its memory alone has nothing in the scene.
         layout, _ = apply_hand_edits(parse_layout(program.text), run.hand_edits(), program.hand_edits)
-        backend.build(print_layout(layout))
+        backend.build(relaid(program.text, layout))
     text = backend.program_text() or program.text
     document = backend.scene_document(run.picture.name, calibration.camera)
     top = backend.render(calibration.camera, LONG_SIDE, labels=False)

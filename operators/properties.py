@@ -145,6 +145,16 @@ class CodeAsRoomSettings(bpy.types.PropertyGroup):
         max=5,
         update=_changed,
     )
+    modelling: bpy.props.EnumProperty(  # type: ignore[valid-type]
+        name="Modelling",
+        description="How objects get their geometry. A change counts from the next run of the stage Geometry on",
+        items=(
+            ("AUTO", "By Model", "Strong models write programs, small and local ones choose from the library", 0),
+            ("PROGRAMS", "Programs", "The model writes a program for each larger object, and mends it after a look", 1),
+            ("LIBRARY", "Library", "The library's furniture, in the picture's colours; one question at most", 2),
+        ),
+        update=_changed,
+    )
     objects: bpy.props.CollectionProperty(  # type: ignore[valid-type]
         name="Objects",
         description="A row for each object that was detected or added",
@@ -167,6 +177,7 @@ def memory_settings(settings: Any, earlier: dict[str, str]) -> dict[str, str]:
         "wall_height_m": f"{settings.wall_height:.6g}" if settings.use_wall_height else "",
         "notes": settings.notes.strip(),
         "iterations": str(settings.iterations),
+        "objects": "" if settings.modelling == "AUTO" else settings.modelling.lower(),
     }
     for name, value in values.items():
         if value:

@@ -9,7 +9,7 @@ running, so it only keeps the text; `flush` writes it on the main thread.
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -20,6 +20,7 @@ from ..pipeline.artifacts.camera import CameraModel
 from ..pipeline.artifacts.layout import LayoutEdit
 from ..pipeline.artifacts.scene import SceneDocument
 from ..pipeline.errors import SceneError
+from ..pipeline.program.prelude.shape import Shape
 from ..pipeline.report_rounds import text_key
 from ..pipeline.scene.backend import BlenderScene
 from ..pipeline.scene.plan import BuildPlan
@@ -146,6 +147,11 @@ class ResolvedScene:
         """As `SceneBackend.program_text`."""
         with self._scene() as scene:
             return scene.program_text()
+
+    def portrait(self, shapes: Sequence[Shape], family: str, long_side: int) -> bytes:
+        """As `Studio.portrait`."""
+        with self._scene() as scene:
+            return scene.portrait(shapes, family, long_side)
 
     def render_view(self, long_side: int) -> bytes:
         """As `SceneBackend.render_view`."""

@@ -12,6 +12,7 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel
 
+from ..pipeline.analysis.scale import scale_sentence
 from ..pipeline.artifacts.analysis import Calibration, SceneAnalysis
 from ..pipeline.artifacts.corrections import Corrections
 from ..pipeline.artifacts.hand import HandEdits
@@ -139,6 +140,8 @@ def _camera_facts(memory: Memory) -> dict[str, Any]:
     return {
         "room_size": (*floor_size(calibration), calibration.height),
         "camera_kind": calibration.camera.kind,
+        "camera_name": calibration.tried[0].name if calibration.tried else "",
+        "scale_words": scale_sentence(calibration),
         "error_px": calibration.error_px,
     }
 

@@ -74,6 +74,7 @@ class RoomState:
     Attributes:
         last_edits: edits by hand that were taken over last, in words; last_count: how many they were.
         hand_edits: edits by hand in all.
+        camera_name: how the picture was taken, in words; scale_words: where the size comes from and how sure it is.
         reference_key: names the reference image, "" when there is none.
         estimate: what running the stages that are left may cost, in words; spending: what was spent, and the cap.
     """
@@ -87,6 +88,8 @@ class RoomState:
     stages: tuple[StageRow, ...] = ()
     room_size: tuple[float, float, float] | None = None
     camera_kind: str = ""
+    camera_name: str = ""
+    scale_words: str = ""
     error_px: float = 0.0
     score: float | None = None
     hand_edits: int = 0

@@ -121,6 +121,11 @@ class CODE_AS_ROOM_MT_objects(bpy.types.Menu):
             operator = layout.operator("code_as_room.lock_objects", text=text, icon=icon)
             operator.group, operator.lock, operator.identifier = group, lock, ""
         layout.separator()
+        for text, icon, boxes in (("Show as Boxes", "MESH_CUBE", True), ("Show Modelled", "MESH_MONKEY", False)):
+            layout.operator("code_as_room.show_boxes", text=text, icon=icon).boxes = boxes
+        layout.operator("code_as_room.detail_again", icon="FILE_REFRESH")
+        layout.operator("code_as_room.edit_function", icon="TEXT")
+        layout.separator()
         operator = layout.operator("code_as_room.include_objects", text="Leave Out Selected", icon="CHECKBOX_DEHLT")
         operator.group, operator.include = "SELECTED", False
         operator = layout.operator("code_as_room.include_objects", text="Take In All", icon="CHECKBOX_HLT")

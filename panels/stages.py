@@ -102,6 +102,7 @@ class CODE_AS_ROOM_PT_options(RoomPanel):
         notes.active = state.uses_model
         notes.prop(settings, "notes", placeholder="Hint for the model")
         column.prop(settings, "iterations")
+        column.prop(settings, "modelling")
         if known_operator("code_as_room.forget_answers"):
             layout.operator("code_as_room.forget_answers", icon="TRASH")
 

@@ -13,7 +13,7 @@ from typing import Literal
 
 from pydantic import BaseModel
 
-from .errors import Cancelled, ModelError, ReplyError, RoomError
+from .errors import Cancelled, ModelError, NotRecordedError, ReplyError, RoomError
 from .journal import KeptReply
 from .models.base import ModelClient, Prompt, Reply, name_of
 from .models.validate import validate_reply
@@ -21,6 +21,8 @@ from .prompting import PROMPT_LIMIT, make_prompt, repair_prompt
 from .stages.wishes import Ask, Request
 
 MOST_SIDE_BY_SIDE = 4
+_OWN_FAILURES = (ReplyError, NotRecordedError)
+"""What concerns one request only."""
 _PATIENCE = 2.0
 """Seconds that a stopped run waits for clients to notice, before it leaves them behind."""
 
@@ -75,8 +77,10 @@ def perform_ask(
     keep: Keep | None = None,
     on_event: OnEvent | None = None,
     refuse: Refuse | None = None,
-) -> list[AskResult]:
+) -> list[AskResult | None]:
     """Answer every request, at most four at a time, and return the results in the order of the requests.
+
+    With `ask.optional`, a request without a usable answer gives None, and others are not kept from being sent.
 
     `recall`, `keep`, `refuse` and `on_event` are called on the calling thread only. When one request fails, the others that are
     already running are let finish and handed to `keep` before the error is raised; those not begun are not sent.
@@ -107,9 +111,10 @@ def perform_ask(
             refuse(ask.requests[index].key)
     if cancel.is_set() or any(isinstance(error, Cancelled) for error in errors.values()):
         raise Cancelled
-    if errors:
-        raise errors[min(errors)]
-    return [results[index] for index in range(len(prompts))]
+    fatal = [index for index in errors if not (ask.optional and isinstance(errors[index], _OWN_FAILURES))]
+    if fatal:
+        raise errors[min(fatal)]
+    return [results.get(index) for index in range(len(prompts))]
 
 
 def _run(
@@ -136,7 +141,7 @@ def _run(
             return _answer(ask.requests[index], prompts[index], client, cancel, events.put)
         except RoomError as error:
             # An unusable answer concerns its own request; a failing service concerns all of them.
-            if not isinstance(error, ReplyError):
+            if not isinstance(error, _OWN_FAILURES if ask.optional else ReplyError):
                 give_up.set()
             raise
 

@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Protocol, runtime_checkable
 
 from .artifacts.camera import CameraModel
 from .artifacts.layout import LayoutEdit
 from .artifacts.scene import SceneDocument
+from .program.prelude.shape import Shape
 
 
 class SceneBackend(Protocol):
@@ -53,6 +54,15 @@ class SceneBackend(Protocol):
 
     def save_copy(self, path: Path) -> None:
         """Save a copy of the .blend, everything packed, without changing the artist's file."""
+        ...
+
+
+@runtime_checkable
+class Studio(Protocol):
+    """A scene that can draw objects which are not in it."""
+
+    def portrait(self, shapes: Sequence[Shape], family: str, long_side: int) -> bytes:
+        """PNG of an object from its front at eye level and from above, side by side; b"" where nothing can draw."""
         ...
 
 

@@ -45,6 +45,10 @@ class ReplyError(ModelError):
         self.problems = problems
 
 
+class NotRecordedError(ModelError):
+    """Recorded answers are played back, and none is recorded for this question."""
+
+
 class CutReplyError(ReplyError):
     """The answer ends in the middle: the model hit its length limit, or the text was cut on its way."""
 

@@ -32,6 +32,8 @@ PARTS = {
     "bounds": "Inside the room",
     "relations": "Relations hold",
     "boxes": "Matches the picture",
+    "clear": "Doors and windows free",
+    "support": "All is carried",
 }
 _SEVERITIES = {"error": "What went wrong", "warning": "Worth a look", "note": "Repaired or noted on the way"}
 _SCALE = {
@@ -94,7 +96,7 @@ def _facts(memory: Memory) -> Markup:
     if calibration is not None:
         width, depth = floor_size(calibration)
         spread = f", give or take {calibration.scale_spread:.0%}" if calibration.scale_spread else ""
-        source = _SCALE.get(calibration.scale_source, f"from {calibration.scale_source}")
+        source = _SCALE.get(calibration.scale_source, f"from the {calibration.scale_source}")
         facts.append(("Room", f"{width:.2f} x {depth:.2f} x {calibration.height:.2f} m", f"{source}{spread}"))
         camera = calibration.camera
         facts.append(("Camera", camera.kind, f"corners fit within {calibration.error_px:.1f} px"))

@@ -20,19 +20,21 @@ from .artifacts.corrections import Found
 from .artifacts.hand import HandEdits
 from .artifacts.layout import LayoutEdit, LayoutProgram
 from .ask import AskEvent, AskResult, perform_ask
-from .backend import HandScene, SceneBackend
+from .backend import HandScene, SceneBackend, Studio
 from .errors import Cancelled, RoomError
 from .journal import AnswerJournal, JournalledClient, KeptAnswer
 from .memory import EntryMeta, Memory, dump_memory, now
 from .models.base import ModelClient, Prompt, Reply, name_of
+from .models.strength import modelling_of
 from .picture import ReferencePicture
 from .program.differences import merged
 from .program.patch import patch_text
 from .run_corrections import bring_up_to_date, corrections_of, edits_of, found_of, inputs_of, program_of
+from .run_modelling import note_own_functions
 from .run_partial import inputs_after
 from .stages import all_stages
 from .stages.base import Stage, View
-from .stages.wishes import Ask, Build, Render, Tell, Wish
+from .stages.wishes import Ask, Build, Portrait, Render, Tell, Wish
 
 Status = Literal["not run", "answered", "done", "stale"]
 """What became of a stage: "answered" when every question was answered but the result is not there, as after undo;
@@ -113,6 +115,8 @@ class Run:
                 recalled[read.kind] = found
         corrections = corrections_of(self.memory)
         settings, edits = dict(self.memory.settings), tuple(self.hand_edits())
+        if settings.get("objects", "auto") not in ("programs", "library"):
+            settings["objects"] = modelling_of(name_of(self.client, stage.id))
         return View(self.picture, artifacts, settings, edits, corrections, only, recalled)
 
     def hand_edits(self) -> list[LayoutEdit]:
@@ -130,6 +134,8 @@ class Run:
         backend = self.backend
         hand = backend if isinstance(backend, HandScene) else None
         typed = hand.text_edits() if hand is not None else None
+        if typed is not None:
+            note_own_functions(self.memory, backend.program_text())
         seen = backend.read_back()
         self._standing = backend.program_text()
         if hand is not None and self._standing:
@@ -242,6 +248,7 @@ class StageSession:
             self._client = JournalledClient(run.client, run.journal, self._inputs, fresh)
         self._started, self._asking = time.monotonic(), 0.0
         self._asked: list[AskResult] = []
+        self._rounds = 0
         self._notes: list[str] = []
         self._generator = stage.run(run.view(stage, only))
         self.wish: Wish | None = None
@@ -263,10 +270,11 @@ class StageSession:
             raise
         self.send(result)
 
-    def ask(self, wish: Ask, on_event: Callable[[AskEvent], None] | None = None) -> list[BaseModel]:
+    def ask(self, wish: Ask, on_event: Callable[[AskEvent], None] | None = None) -> list[BaseModel | None]:
         """Perform an `Ask`; may run in a worker thread while nothing else touches this session."""
         began = time.monotonic()
         run = self.run
+        self._rounds += 1
         try:
             results = perform_ask(
                 wish, self.stage.id, self._client, run.cancel, self._recall, self._keep, on_event, self._refuse
@@ -274,8 +282,9 @@ class StageSession:
         finally:
             self._asking += time.monotonic() - began
         for result in results:
-            self._notes += [f"{result.key}: {note}" for note in result.notes]
-        return [result.reply for result in results]
+            if result is not None:
+                self._notes += [f"{result.key}: {note}" for note in result.notes]
+        return [None if result is None else result.reply for result in results]
 
     def act(self, wish: Wish) -> Any:
         """Perform a wish that needs Blender's main thread."""
@@ -285,6 +294,9 @@ class StageSession:
             return self.run.backend.build(wish.text)
         if isinstance(wish, Render):
             return self.run.backend.render(wish.camera, wish.long_side, wish.labels)
+        if isinstance(wish, Portrait):
+            backend = self.run.backend
+            return backend.portrait(wish.shapes, wish.family, wish.long_side) if isinstance(backend, Studio) else b""
         raise TypeError(f"a stage wished for {type(wish).__name__}")
 
     def send(self, result: Any) -> None:
@@ -368,6 +380,9 @@ class StageSession:
             cost=result.cost,
             seconds=round(result.seconds, 3),
             prompt_hash=result.prompt_hash,
+            prompt_bytes=result.prompt_bytes,
+            tries=result.tries,
+            round=self._rounds,
             client=self._asks,
             inputs=self._inputs,
             notes=list(result.notes),

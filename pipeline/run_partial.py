@@ -11,6 +11,7 @@ from pydantic import BaseModel
 from .artifacts.analysis import Calibration, SceneAnalysis
 from .artifacts.graph import SceneGraph
 from .artifacts.layout import LayoutProgram
+from .artifacts.objects import Descriptions, RoomStyle
 from .layout.hand import name_now
 from .memory import Memory, content_hash
 from .program.lines import parse_layout
@@ -65,6 +66,10 @@ def _without(artifact: BaseModel, chosen: set[str]) -> Any:
     if isinstance(artifact, SceneGraph):
         edges = [e for e in artifact.edges if not chosen & {e.source, e.target}]
         return sorted(str(e) for e in edges)
+    if isinstance(artifact, Descriptions):
+        return _others(artifact.objects, chosen)
+    if isinstance(artifact, RoomStyle):
+        return None
     if isinstance(artifact, LayoutProgram):
         layout = parse_layout(artifact.text)
         return layout.model_copy(update={"proxies": _others(layout.proxies, chosen)})

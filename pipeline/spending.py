@@ -27,7 +27,8 @@ BYTES_A_TOKEN = 3.4
 """Of prompts in English and JSON; rather few, so that an estimate is rather high."""
 _PIXELS_A_TOKEN = 700.0
 _PICTURE_LEAST, _PICTURE_MOST = 260, 4800
-_ANSWER_TOKENS = {"s01_analysis": 9_000, "s02_graph": 4_000, "s03_layout": 3_000, "s04_auxiliary": 3_000}
+_ANSWER_TOKENS = {"s01_analysis": 9_000, "s02_graph": 4_000, "s03_layout": 3_000, "s04_auxiliary": 3_000,
+                  "s05_descriptions": 2_000, "s06_geometry": 12_000}  # fmt: skip
 """Expected length of an answer, thinking included."""
 _ANSWER_ELSE = 6_000
 
@@ -88,6 +89,8 @@ def stage_work(stage: str, rounds: int) -> StageWork:
         "s02_graph": StageWork(1, 2, 4_000, 2_500),
         "s03_layout": StageWork(min(1, rounds), max(0, rounds), 7_000, 2_000),
         "s04_auxiliary": StageWork(0, 2, 4_000, 2_000),
+        "s05_descriptions": StageWork(2, 6, 4_500, 1_200),
+        "s06_geometry": StageWork(1, 11, 12_000, 7_000),
     }
     return known.get(stage, StageWork(1, 6, 8_000, 5_000))
 

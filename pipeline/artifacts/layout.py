@@ -171,6 +171,8 @@ class Score(Artifact):
     bounds: float
     relations: float
     boxes: float
+    clear: float = 1.0
+    support: float = 1.0
     model: float | None = None
 
 
@@ -190,7 +192,7 @@ class LedgerEntry(Artifact):
 
     id: str
     category: str
-    state: Literal["placed", "deferred", "dropped"]
+    state: Literal["placed", "detailed", "deferred", "dropped"]
     reason: str = ""
 
 

@@ -111,13 +111,15 @@ class AnalysisReply(Reply):
 
 
 class CorrectionReply(Reply):
-    """A better box or name for an object that was found; null fields stay as they are."""
+    """A better box, place, size or name for an object that was found; null fields stay as they are."""
 
     id: str
     wrong: str = ""
     remove: bool = False
     category: str | None = None
     box: BoxReply | None = None
+    centre_m: MetresReply | None = None
+    size_m: SizeReply | None = None
     facing: Facing | None = None
     parent: str | None = None
 

@@ -21,7 +21,7 @@ from typing import Any
 
 from PIL import Image
 
-from ..errors import Cancelled, ModelError, OutputError, ReplyError
+from ..errors import Cancelled, ModelError, NotRecordedError, OutputError, ReplyError
 from .base import ModelClient, Prompt, Reply, name_of
 from .readable_json import readable_json
 from .tolerant import read_json
@@ -62,7 +62,7 @@ class RecordedClient:
         key = reply_key(prompt)
         entry = self._replies.get(key)
         if entry is None:
-            raise ModelError(
+            raise NotRecordedError(
                 f"No answer is recorded for {key!r} in {self.folder.name!r}.",
                 "Record it with a model, or choose the built-in analysis.",
             )

@@ -13,7 +13,7 @@ from ..artifacts.layout import Layout, LayoutEdit, ProxyLine, RoomLine, WallLine
 from ..errors import ProgramError
 from .assemble import room_part
 from .edits import LISTS, ROOM, apply_edits
-from .limits import DEFAULT_LIMITS
+from .limits import FINISHED_ROOM_LIMITS
 from .lines import LINE_TYPES, called_name, print_line, rounded_line
 from .parse_safe import parse
 
@@ -101,7 +101,7 @@ def own_code(text: str) -> tuple[str, ...]:
     Comments do not count. A text that cannot be parsed has none.
     """
     try:
-        tree = parse(text.removeprefix("\ufeff"), DEFAULT_LIMITS)
+        tree = parse(text.removeprefix("\ufeff"), FINISHED_ROOM_LIMITS)
     except Exception:
         return ()
     return tuple(ast.unparse(node) for node in tree.body if called_name(node) not in (*LINE_TYPES, "build"))

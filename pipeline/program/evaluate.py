@@ -22,6 +22,7 @@ from .prelude.record import Record
 from .prelude.recorder import Recorder
 from .prelude.shape import Shape, flat_shapes
 from .refusals import located, refuse, unknown_name
+from .reuse import reuse
 from .scopes import Binder, Scope, place
 from .statements import Statements
 from .values import CONTAINERS, UNSET, Frame, Function, measure
@@ -39,7 +40,9 @@ def evaluate(text: str, limits: Limits = DEFAULT_LIMITS) -> Record:
     recorder = Recorder()
     vocabulary = room_vocabulary()
     lines = {name: getattr(recorder, name) for name in vocabulary.lines}
-    Evaluation(vocabulary, lines, limits).feed(text)
+    known = reuse(text, limits)
+    lines["furnish"] = known.furnish(recorder.furnish, recorder.size_of)
+    Evaluation(vocabulary, lines, limits).feed(known.text)
     return recorder.record
 
 

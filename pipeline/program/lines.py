@@ -26,7 +26,7 @@ from ..artifacts.layout import (
     WindowLine,
 )
 from ..errors import ProgramError
-from .limits import DEFAULT_LIMITS
+from .limits import FINISHED_ROOM_LIMITS
 from .parse_safe import parse
 from .prelude.recorder import Recorder
 
@@ -207,7 +207,7 @@ def parse_layout(text: str) -> Layout:
         ProgramError: the text is not Python or too large, a layout line is not a plain statement with literal arguments, or one
             says something that no room can have. It names the line.
     """
-    return layout_of(layout_statements(parse(text, DEFAULT_LIMITS)))
+    return layout_of(layout_statements(parse(text, FINISHED_ROOM_LIMITS)))
 
 
 def parse_line(text: str) -> Line:
@@ -216,7 +216,7 @@ def parse_line(text: str) -> Line:
     Raises:
         ProgramError: the text is not exactly one layout line, or the line says something that no room can have.
     """
-    statements = layout_statements(parse(text, DEFAULT_LIMITS))
+    statements = layout_statements(parse(text, FINISHED_ROOM_LIMITS))
     if len(statements) != 1:
         raise ProgramError("one layout line is needed", 0)
     return statements[0].line

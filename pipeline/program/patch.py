@@ -11,7 +11,7 @@ from ..artifacts.analysis import Finding
 from ..artifacts.layout import Layout, LayoutEdit, ProxyLine, RoomLine
 from ..errors import ProgramError
 from .edits import LISTS, Edited, apply_edits, edit_layout
-from .limits import DEFAULT_LIMITS
+from .limits import FINISHED_ROOM_LIMITS
 from .lines import Statement, called_name, layout_of, layout_statements, name_of, parse_layout, print_line, quoted
 from .parse_safe import parse
 
@@ -42,7 +42,7 @@ def patch_text(text: str, edits: list[LayoutEdit]) -> tuple[str, list[Finding]]:
     """
     mark = "\ufeff" if text.startswith("\ufeff") else ""
     text = text.removeprefix(mark)
-    tree = parse(text, DEFAULT_LIMITS)
+    tree = parse(text, FINISHED_ROOM_LIMITS)
     statements = layout_statements(tree)
     edited = edit_layout(layout_of(statements), edits)
     source = _Source(text, tree)

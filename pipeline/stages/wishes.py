@@ -2,7 +2,7 @@
 """What a stage may wish for. A stage yields a wish and is sent its result; it never does I/O itself.
 
 `Ask` is answered with a list of validated replies in the order of its requests; `Build` with a `SceneSummary` of what
-stands in the scene; `Render` with PNG bytes; `Tell` with None.
+stands in the scene; `Render` with PNG bytes; `Portrait` with PNG bytes, empty where nothing can draw; `Tell` with None.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from pydantic import BaseModel
 
 from ..artifacts.camera import CameraModel
 from ..artifacts.layout import Layout
+from ..program.prelude.shape import Shape
 
 
 @dataclass(frozen=True)
@@ -48,9 +49,15 @@ class Request:
 
 @dataclass(frozen=True)
 class Ask:
-    """Requests that may run side by side."""
+    """Requests that may run side by side.
+
+    Attributes:
+        optional: the stage can do without an answer: a request whose answers stay unusable, or for which none is
+            recorded, is answered with None. A service that fails still ends the stage.
+    """
 
     requests: tuple[Request, ...]
+    optional: bool = False
 
 
 @dataclass(frozen=True)
@@ -73,6 +80,19 @@ class Render:
 
 
 @dataclass(frozen=True)
+class Portrait:
+    """Pictures of an object that is not in the room yet, from its front at eye level and from above, side by side.
+
+    Attributes:
+        shapes: in the object's frame, metres; family: of its category, for shapes without a material role.
+    """
+
+    shapes: tuple[Shape, ...]
+    family: str
+    long_side: int = 640
+
+
+@dataclass(frozen=True)
 class Tell:
     """Progress for the artist: what is being done, step of steps (0 when not counted)."""
 
@@ -81,8 +101,20 @@ class Tell:
     steps: int = 0
 
 
-Wish = Ask | Build | Render | Tell
+Wish = Ask | Build | Render | Portrait | Tell
 StageRun = Generator[Wish, Any, list[BaseModel]]
 """A stage's generator; its return value is the list of artifacts that it writes."""
 
-__all__ = ["Ask", "Build", "CameraModel", "Layout", "Picture", "Render", "Request", "StageRun", "Tell", "Wish"]
+__all__ = [
+    "Ask",
+    "Build",
+    "CameraModel",
+    "Layout",
+    "Picture",
+    "Portrait",
+    "Render",
+    "Request",
+    "StageRun",
+    "Tell",
+    "Wish",
+]

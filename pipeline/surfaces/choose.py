@@ -26,6 +26,8 @@ HIDDEN_COST = 1.5
 SHRINK_COST = 6.0
 """Costs of one `MOVE_UNIT` moved and one `HEIGHT_UNIT` off the stated height are 1; of a place that the picture cannot
 show, and of being made smaller by its whole size, in the same unit."""
+COVERS = 0.35
+"""A thing whose outline covers this share of a surface lies spread over it (duvet, throw, tablecloth): others lie on it."""
 LYING = 0.02
 """A thing stands on another when its base is within this many metres of the other's surface."""
 
@@ -66,7 +68,7 @@ class Carriers:
         """A thing that stands where it stands; what it stands on is occupied there."""
         self.proxies[proxy.id] = proxy
         parent = self.proxies.get(proxy.parent or "")
-        if proxy.placement != "surface" or parent is None:
+        if proxy.placement != "surface" or parent is None or self.spread_on(proxy.size, parent.id) is not None:
             return
         base = proxy.centre[2] - proxy.size[2] / 2 - base_of(parent)
         x, y = to_local(parent, proxy.centre[:2])
@@ -74,6 +76,25 @@ class Carriers:
             if abs(surface.level - base) <= max(LYING, 0.05):
                 cells = occupied(surface.grid, x, y, proxy.size[0], proxy.size[1], proxy.yaw - parent.yaw)
                 self._surfaces[parent.id][number] = surface.taken(cells)
+
+    def spread_on(self, size: Sequence[float], parent: str) -> Surface | None:
+        """The surface over which a thing of this size is spread, None where it stands on it or hangs from it."""
+        outline = size[0] * size[1]
+        wide = [s for s in self.surfaces(parent) if s.open_share > 0.3 and s.area >= 0.6 * outline]
+        largest = max(wide, key=lambda s: s.area, default=None)
+        return largest if largest is not None and outline >= COVERS * largest.area else None
+
+    def spread(self, proxy: ProxyLine) -> ProxyLine | None:
+        """A thing that is spread over its parent, at a height at which it touches it; None when it is no such thing."""
+        parent = self.proxies.get(proxy.parent or "")
+        surface = self.spread_on(proxy.size, parent.id) if parent is not None else None
+        if parent is None or surface is None:
+            return None
+        level = base_of(parent) + surface.level
+        base, height = base_of(proxy), proxy.size[2]
+        # Its edge may hang down, so it may begin below the surface; it neither floats above it nor ends below.
+        base = min(level, max(base, level + 0.02 - height))
+        return proxy.model_copy(update={"centre": (*proxy.centre[:2], base + height / 2)})
 
     def seat(self, item: DetectedObject, calibration: Calibration, parent: str) -> Seated | None:
         """The best place for an object on one thing, or None when it cannot stand on it. Nothing is occupied yet."""

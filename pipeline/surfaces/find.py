@@ -25,6 +25,8 @@ ROUGHNESS = 0.03
 """Heights within this many metres below a surface's level belong to it: folds, tufts and slats."""
 BURIED = 0.3
 """A level face with another upward face this near above it, metres, and nothing between them, lies inside a solid."""
+STEP = 0.07
+"""What lies up to this many metres below a surface, beside it, carries together with it."""
 SKIN = 0.004
 """Crossings nearer than this to each other are two faces of one sheet."""
 
@@ -89,9 +91,19 @@ def support_surfaces(shapes: Sequence[Shape], least_area: float = LEAST_AREA) ->
         if count * samples.grid.cell**2 < least_area:
             break
         found.append(_surface(samples.grid, cells[inside], heights[inside], above[inside], owner[inside], shapes))
-        rest = ~inside & ~((heights > level) & (heights <= level + ROUGHNESS))
-        cells, heights, above, owner = cells[rest], heights[rest], above[rest], owner[rest]
-    return sorted(found, key=lambda s: -s.level)
+        cells, heights, above, owner = cells[~inside], heights[~inside], above[~inside], owner[~inside]
+    found.sort(key=lambda s: -s.level)
+    return [_with_steps(surface, found) for surface in found]
+
+
+def _with_steps(surface: Surface, others: Sequence[Surface]) -> Surface:
+    """The surface with what lies a little lower beside it: a thing may lie across a fold, a rim or the edge of a duvet."""
+    heights, clearance = surface.heights.copy(), surface.clearance.copy()
+    for other in others:
+        if surface.level - STEP <= other.level < surface.level:
+            filled = np.isnan(heights) & np.isfinite(other.heights)
+            heights[filled], clearance[filled] = other.heights[filled], other.clearance[filled]
+    return replace(surface, heights=heights, clearance=clearance, free=np.isfinite(heights))
 
 
 def _usable(samples: Samples) -> tuple[NDArray[np.bool_], Floats]:

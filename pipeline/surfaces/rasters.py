@@ -115,7 +115,9 @@ def sample(shapes: Sequence[Shape], cell: float, level: float = 0.9) -> Samples 
 def _parts(pairs: Ints) -> list[slice]:
     """Slices of the triangles, each with about `_MOST_PAIRS` pairs."""
     ends = np.cumsum(pairs)
-    cuts: Ints | list[int] = np.searchsorted(ends, np.arange(_MOST_PAIRS, int(ends[-1]) + _MOST_PAIRS, _MOST_PAIRS)) if len(ends) else []
+    cuts: Ints | list[int] = (
+        np.searchsorted(ends, np.arange(_MOST_PAIRS, int(ends[-1]) + _MOST_PAIRS, _MOST_PAIRS)) if len(ends) else []
+    )
     edges = [0, *(int(c) + 1 for c in cuts)]
     return [slice(a, min(b, len(pairs))) for a, b in zip(edges[:-1], edges[1:], strict=True) if a < len(pairs)]
 

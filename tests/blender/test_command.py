@@ -78,7 +78,7 @@ def test_room_py_and_room_blend_hold_the_boxes_of_scene_json(room) -> None:
 
 def test_everything_is_told_at_the_end(room) -> None:
     result = room.make().finished()
-    assert "Objects: 7 detected: 7 placed." in result.out and "Made by: Recorded answers" in result.out
+    assert "Objects: 7 detected: 7 detailed." in result.out and "Made by: Recorded answers" in result.out
     assert all(name in result.out for name in result.files)
     for name in ("top.png", "view.png"):
         with Image.open(room.out / name) as image:

@@ -144,7 +144,7 @@ def test_typing_filters_by_what_a_row_says_and_sorting_is_by_name(scene: Any) ->
 
     chosen = placed_ids()[0]
     item(chosen).locked = True
-    fake: Any = SimpleNamespace(filter_name="locked placed", bitflag_filter_item=1, use_filter_sort_alpha=True)
+    fake: Any = SimpleNamespace(filter_name="locked detailed", bitflag_filter_item=1, use_filter_sort_alpha=True)
     flags, order = CODE_AS_ROOM_UL_objects.filter_items(fake, bpy.context, scene.code_as_room, "objects")
     ids = [i.name for i in scene.code_as_room.objects]
     assert [name for name, flag in zip(ids, flags, strict=True) if flag] == [chosen]

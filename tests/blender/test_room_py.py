@@ -56,7 +56,11 @@ def bed_1():
     sheet = solidify(bend(taper(grid(lambda u, v: (u, v, v), 2, 5), 0.5), 20), 0.02)
     column = loft([[(0, 0), (1, 0), (1, 1)], [(0, 0), (0.5, 0), (0.5, 0.5)]], [0, 1])
     posts = [turn(capsule(0.05, 0.6, segments=8), 10 * i, "x") for i in range(3)]
-    more = [posts, soft, block, sheet, column]
+    top = carve(panelled((0.5, 0.03, 0.6), rows=2), cylinder(0.05, 1, axis="y", edge=0.001))
+    board = extrude(rectangle(0.5, 0.3, 0.05), 0.02, holes=[ellipse(0.1, 0.2)])
+    seat = [tint(pouf((0.5, 0.5, 0.4)), {"": "#336699"}), wedge((0.2, 0.2, 0.1)), tube(spline([(0, 0, 0), (1, 0, 1), (2, 0, 0)]), 0.02)]
+    plants = [leaves(3, 0.2, 0.1, kind=kind) for kind in ("fern", "grass", "succulent")]
+    more = [posts, soft, block, sheet, column, top, board, seat, plants]
     return [frame, part("leg", legs, material="metal"), move(cover, (0, 0, 0.7)), part("pillow", pillows), more]
 
 
@@ -99,6 +103,8 @@ def dump() -> dict[str, Any]:
             entry["materials"] = [m.name for m in mesh.materials]
             entry["of_face"] = [p.material_index for p in mesh.polygons]
             entry["smooth"] = [p.use_smooth for p in mesh.polygons]
+            entry["sharp"] = sorted(sorted(e.vertices) for e in mesh.edges if e.use_edge_sharp)
+            entry["uvs"] = [list(c.vector) for c in mesh.uv_layers[0].uv] if mesh.polygons else []
         found[obj.name] = entry
     return found
 

@@ -26,6 +26,10 @@ EMPTY = {
     "02_graph": {"attributes": [], "relations": []},
     "03_critique": {"score": 90, "remarks": "", "edits": []},
     "04_auxiliary": {"placements": []},
+    "05_descriptions": {"room_style": "", "objects": []},
+    "06_pieces": {"objects": []},
+    "06_programs": {"objects": []},
+    "06_correct": {"objects": []},
 }
 
 

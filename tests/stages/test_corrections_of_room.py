@@ -24,7 +24,8 @@ from code_as_room.pipeline.run import Run
 from code_as_room.pipeline.run_corrections import correct, corrections_of, found_of
 from code_as_room.pipeline.stages import all_stages
 
-ANALYSIS, GRAPH, LAYOUT, AUXILIARY = all_stages()
+FOUR = all_stages()[:4]
+ANALYSIS, GRAPH, LAYOUT, AUXILIARY = FOUR
 
 
 def said(identifier: str, **values: Any) -> Corrections:
@@ -32,7 +33,7 @@ def said(identifier: str, **values: Any) -> Corrections:
 
 
 def statuses(run: Run) -> list[str]:
-    return [run.status(stage) for stage in all_stages()]
+    return [run.status(stage) for stage in FOUR]
 
 
 def analysis_of(run: Run) -> SceneAnalysis:
@@ -88,7 +89,7 @@ def lengths(layout: Layout) -> list[float]:
 
 
 def test_a_known_length_scales_the_room_and_asks_nothing(run: Run, answers: Any, scene: Any) -> None:
-    run.run_all()
+    run.run_all(FOUR)
     before, asked, entries = parse_layout(scene.text), len(answers.asked), len(run.memory.entries)
     known = length(5.0)
     factor = 5.0 / floor_distance(calibration_of(run).camera, *in_picture(known))  # type: ignore[operator]
@@ -103,7 +104,7 @@ def test_a_known_length_scales_the_room_and_asks_nothing(run: Run, answers: Any,
     assert lengths(after) == pytest.approx([v * factor for v in lengths(before)], abs=3e-4)
     assert scene.text == program(run).text, "the built room is what memory says"
     assert after.walls[0].thickness == pytest.approx(0.12 * factor, abs=1e-4)
-    assert run.run_all() == [] and len(answers.asked) == asked, "nothing is left to do"
+    assert run.run_all(FOUR) == [] and len(answers.asked) == asked, "nothing is left to do"
     assert load_memory(scene.memory) == run.memory
     correct(run, Corrections())
     assert scene.text == print_again(before) and len(run.memory.entries) == entries
@@ -117,7 +118,7 @@ def print_again(layout: Layout) -> str:
 
 
 def test_dragging_a_slider_leaves_one_correction_in_memory(run: Run, scene: Any) -> None:
-    run.run_all()
+    run.run_all(FOUR)
     before, counts = scene.text, set()
     for step in range(12):
         run.memory.settings["known_width_m"] = f"{4.0 + step / 7:.3f}"
@@ -136,7 +137,7 @@ def analysis_width(text: str) -> float:
 
 
 def test_hand_edits_and_locked_things_are_scaled_with_the_room(run: Run, scene: Any) -> None:
-    run.run_all()
+    run.run_all(FOUR)
     scene.edits = [
         LayoutEdit(op="move", id="chair", centre=(1.2, -1.3, 0.4), origin="artist"),
         LayoutEdit(op="resize", id="closet", size=(1.0, 0.5, 1.5), origin="artist"),
@@ -165,7 +166,7 @@ def again(run: Run, stage: Any, only: frozenset[str] | None = None) -> None:
 
 
 def test_another_wall_height_changes_the_walls_and_nothing_else(run: Run, answers: Any, scene: Any) -> None:
-    run.run_all()
+    run.run_all(FOUR)
     before, asked = parse_layout(scene.text), len(answers.asked)
     run.memory.settings["wall_height_m"] = "3.1"
     correct(run, corrections_of(run.memory))
@@ -181,7 +182,7 @@ def test_another_wall_height_changes_the_walls_and_nothing_else(run: Run, answer
 
 
 def test_known_length_and_wall_height_together_are_both_exact(run: Run) -> None:
-    run.run_all()
+    run.run_all(FOUR)
     run.memory.settings["wall_height_m"] = "3.1"
     known = length(6.5)
     correct(run, Corrections(known_length=known))
@@ -201,7 +202,7 @@ def test_a_known_length_wins_over_a_known_width_and_says_so(run: Run) -> None:
     [length(0.0), length(1e9), length(math.pi, (300, 300), (300, 300)), length(2.0, (-1e7, 9e8), (1e9, -4e8))],
 )
 def test_an_impossible_length_is_refused_and_changes_nothing(run: Run, scene: Any, known: KnownLength) -> None:
-    run.run_all()
+    run.run_all(FOUR)
     memory, text = scene.memory, scene.text
     with pytest.raises(RoomError) as caught:
         correct(run, Corrections(known_length=known))
@@ -209,7 +210,7 @@ def test_an_impossible_length_is_refused_and_changes_nothing(run: Run, scene: An
 
 
 def test_moved_corners_fit_the_camera_anew_and_the_built_room_follows(run: Run, scene: Any, answers: Any) -> None:
-    run.run_all()
+    run.run_all(FOUR)
     scene.edits = [LayoutEdit(op="move", id="chair", centre=(1.2, -1.3, 0.4), origin="artist")]
     asked = len(answers.asked)
     run.take_over_edits()
@@ -231,7 +232,7 @@ def test_moved_corners_fit_the_camera_anew_and_the_built_room_follows(run: Run, 
     now = project(calibration_of(run).camera, [(*chair.centre[:2], 0.0)])[0]
     assert math.dist(was, now) < 25, "what the artist placed stays on its place in the picture, nearly"
     assert run.hand_edits()[0].centre == pytest.approx(chair.centre, abs=1e-3)
-    run.run_all()
+    run.run_all(FOUR)
     assert statuses(run) == ["done"] * 4
     assert parse_layout(scene.text).proxy("chair") == chair, "locked"
     correct(run, Corrections())
@@ -239,7 +240,7 @@ def test_moved_corners_fit_the_camera_anew_and_the_built_room_follows(run: Run, 
 
 
 def test_a_room_without_floor_is_refused(run: Run, scene: Any) -> None:
-    run.run_all()
+    run.run_all(FOUR)
     memory = scene.memory
     with pytest.raises(RoomError):
         correct(run, Corrections(floor_polygon=[ImagePoint(x=10, y=10), ImagePoint(x=500, y=500)]))
@@ -247,20 +248,20 @@ def test_a_room_without_floor_is_refused(run: Run, scene: Any) -> None:
 
 
 def test_what_is_left_out_is_gone_from_the_room_and_in_the_ledger(run: Run) -> None:
-    run.run_all()
+    run.run_all(FOUR)
     correct(run, said("stand", include=False))
     assert statuses(run) == ["done", "stale", "stale", "stale"]
-    run.run_all()
+    run.run_all(FOUR)
     assert parse_layout(program(run).text).proxy("stand") is None
     assert ledger(run)["stand"] == ("dropped", "left out by the artist")
     assert len(ledger(run)) == 7
     correct(run, Corrections())
-    run.run_all()
+    run.run_all(FOUR)
     assert ledger(run)["stand"][0] == "placed"
 
 
 def test_a_corrected_box_moves_the_object_and_an_undone_correction_leaves_no_trace(run: Run) -> None:
-    run.run_all()
+    run.run_all(FOUR)
     chair = objects(run)["chair"]
     box = chair.box.model_copy(update={"x_min": chair.box.x_min + 250, "x_max": chair.box.x_max + 250})
     correct(run, said("chair", box=box, category="wing chair"))
@@ -268,7 +269,7 @@ def test_a_corrected_box_moves_the_object_and_an_undone_correction_leaves_no_tra
     assert moved.category == "wing chair" and moved.box == box and moved.confidence == 1.0
     assert moved.centre[0] - chair.centre[0] > 0.8 and moved.size == chair.size
     assert statuses(run) == ["done", "stale", "stale", "stale"]
-    run.run_all()
+    run.run_all(FOUR)
     placed = parse_layout(program(run).text).proxy("chair")
     assert placed is not None and placed.category == "wing chair"
     assert placed.centre[0] - chair.centre[0] > 0.8
@@ -278,7 +279,7 @@ def test_a_corrected_box_moves_the_object_and_an_undone_correction_leaves_no_tra
 
 
 def test_an_added_object_is_placed_by_its_box_and_never_taken_away(run: Run, answers: Any) -> None:
-    run.run_all()
+    run.run_all(FOUR)
     box = ImageBox(x_min=380, y_min=700, x_max=480, y_max=810)
     added = AddedObject(id="Big Pouf!", category="pouf", box=box)
     correct(run, Corrections(added=[added]))
@@ -286,7 +287,7 @@ def test_an_added_object_is_placed_by_its_box_and_never_taken_away(run: Run, ans
     assert pouf.placement == "floor" and pouf.salience == "major" and 0.05 <= pouf.size[2] <= 0.9
     edits = [{"op": "remove", "id": "big_pouf", "reason": "not there"}]
     answers.by_key["03_critique"] = {"score": 50, "edits": edits}
-    run.run_all()
+    run.run_all(FOUR)
     proxy = parse_layout(program(run).text).proxy("big_pouf")
     assert proxy is not None
     # It shows where it was drawn.
@@ -312,7 +313,7 @@ def test_what_is_drawn_on_a_table_or_on_a_wall_goes_there(run: Run) -> None:
     correct(run, Corrections(added=[tray, shelf]))
     assert (objects(run)["tray"].placement, objects(run)["tray"].parent) == ("surface", "bed")
     assert objects(run)["shelf"].placement == "wall"
-    run.run_all()
+    run.run_all(FOUR)
     assert ledger(run)["tray"][0] == ledger(run)["shelf"][0] == "placed"
     proxy = parse_layout(program(run).text).proxy("shelf")
     assert proxy is not None and proxy.parent == "wall_w"
@@ -322,7 +323,7 @@ def test_corrections_wait_for_an_analysis_and_survive_another_one(run: Run, answ
     correct(run, Corrections(known_length=length(5.0)))
     run.run_stage(ANALYSIS)
     assert floor_distance(calibration_of(run).camera, (300, 300), (700, 600)) == pytest.approx(5.0, abs=1e-9)
-    run.run_all()
+    run.run_all(FOUR)
     correct(run, corrections_of(run.memory).having(ObjectCorrection(id="chair", include=False)))
     correct(run, corrections_of(run.memory).having(ObjectCorrection(id="bed", note="It is 1.6 m wide.")))
     for item in answers.by_key["01_analysis"]["objects"]:
@@ -337,7 +338,7 @@ def test_corrections_wait_for_an_analysis_and_survive_another_one(run: Run, answ
 
 
 def test_a_correction_that_fits_nothing_any_more_is_kept_or_reported(run: Run, answers: Any) -> None:
-    run.run_all()
+    run.run_all(FOUR)
     chair = objects(run)["chair"].box
     wanted = Corrections(
         objects=[
@@ -359,7 +360,7 @@ def test_the_analysis_finding_what_was_added_does_not_double_it(run: Run, answer
     answers.by_key["01_analysis"]["objects"] = [o for o in seen if o is not closet]
     run.run_stage(ANALYSIS)
     correct(run, Corrections(added=[AddedObject(id="tall_one", category="wardrobe", box=ImageBox(**closet["box"]))]))
-    run.run_all()
+    run.run_all(FOUR)
     answers.by_key["01_analysis"]["objects"] = seen
     again(run, ANALYSIS)
     assert "closet" not in objects(run)
@@ -370,14 +371,14 @@ def test_notes_go_with_the_questions_about_their_object_and_nothing_else_changes
     for item in answers.by_key["01_analysis"]["objects"]:
         if item["id"] == "lamp":
             item.update(parent=None, box={"x_min": 700, "y_min": 480, "x_max": 720, "y_max": 500})
-    run.run_all()
+    run.run_all(FOUR)
     plain = {p.key: p.text for p in answers.asked}
     answers.asked.clear()
     correct(run, Corrections(objects=[ObjectCorrection(id="bed", locked=True)]))
     assert statuses(run) == ["done"] * 4, "a lock is no reason to ask anything again"
     correct(run, said("lamp", note="  It stands\non the sill. "))
     assert statuses(run) == ["done", "stale", "stale", "stale"]
-    run.run_all()
+    run.run_all(FOUR)
     noted = {p.key: p.text for p in answers.asked}
     assert {"02_graph", "04_auxiliary"} <= set(noted)
     for key in ("02_graph", "04_auxiliary"):
@@ -387,5 +388,5 @@ def test_notes_go_with_the_questions_about_their_object_and_nothing_else_changes
     correct(run, Corrections())
     assert statuses(run)[1:] != ["done"] * 3
     answers.asked.clear()
-    run.run_all()
+    run.run_all(FOUR)
     assert answers.asked == [], "without the note the questions are the old ones, and were answered"

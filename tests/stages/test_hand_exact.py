@@ -19,7 +19,8 @@ from code_as_room.pipeline.scene.backend import BlenderScene
 from code_as_room.pipeline.scene.tags import ID, PART, find_room_collection
 from code_as_room.pipeline.stages import all_stages
 
-ANALYSIS, GRAPH, LAYOUT, AUXILIARY = all_stages()
+FOUR = all_stages()[:4]
+ANALYSIS, GRAPH, LAYOUT, AUXILIARY = FOUR
 
 
 class QuickScene(BlenderScene):
@@ -38,7 +39,7 @@ def room(picture: Any, answers: Any, scene: Any) -> Run:
     backend = QuickScene()
     backend.grey = scene.render(None, 256, False)
     run = Run(picture, Memory(), answers, backend)
-    run.run_all()
+    run.run_all(FOUR)
 
     def push(prompt: Any) -> dict[str, Any]:
         objects = answers.by_key["01_analysis"]["objects"]

@@ -14,7 +14,9 @@ from code_as_room.pipeline.program.lines import parse_layout
 from code_as_room.pipeline.run import Run
 from code_as_room.pipeline.stages import all_stages
 
-LAYOUT = all_stages()[2]
+FOUR = all_stages()[:4]
+
+LAYOUT = FOUR[2]
 
 
 def said(answers: Any, identifier: str) -> dict[str, Any]:
@@ -49,16 +51,16 @@ def test_a_moved_object_whose_parent_is_not_a_major_still_builds(run: Run, answe
     chair.update(parent="rug", box=shifted(right, 25))
     chair["centre_m"]["x_m"] += 0.2
     answers.by_key["03_critique"] = one_round({"op": "move", "id": "chair", "box": right})
-    run.run_all()
+    run.run_all(FOUR)
     for text in scene.built:
         evaluate(text)
     assert len(layout_program(run).iterations) == 2
 
 
 def test_the_scene_shows_the_round_that_is_kept(run: Run, answers: Any, scene: Any) -> None:
-    worse = {"op": "move", "id": "chair", "box": shifted(said(answers, "chair")["box"], 12)}
+    worse = {"op": "move", "id": "chair", "box": shifted(said(answers, "chair")["box"], 6)}
     answers.by_key["03_critique"] = one_round(worse)
-    run.run_all(all_stages()[:3])
+    run.run_all(FOUR[:3])
     program = layout_program(run)
     assert program.best == 0 and len(program.iterations) == 2
     assert scene.text == program.text
@@ -70,7 +72,7 @@ def test_a_turn_and_a_new_name_that_boxes_cannot_judge_are_kept(run: Run, answer
         {"op": "turn", "id": "bed", "facing": "down", "yaw_deg": 0},
         {"op": "recategorise", "id": "chair", "category": "stool"},
     )
-    run.run_all()
+    run.run_all(FOUR)
     layout = parse_layout(layout_program(run).text)
     bed, chair = layout.proxy("bed"), layout.proxy("chair")
     assert bed is not None and bed.yaw == 0 and chair is not None and chair.category == "stool"
@@ -79,7 +81,7 @@ def test_a_turn_and_a_new_name_that_boxes_cannot_judge_are_kept(run: Run, answer
 def test_what_was_hardly_seen_may_be_taken_out_and_is_in_the_ledger(run: Run, answers: Any) -> None:
     said(answers, "chair")["confidence"] = 0.3
     answers.by_key["03_critique"] = one_round({"op": "remove", "id": "chair"})
-    run.run_all()
+    run.run_all(FOUR)
     assert parse_layout(layout_program(run).text).proxy("chair") is None
     assert states(run)["chair"] == "dropped"
 
@@ -96,10 +98,10 @@ def test_a_stop_is_obeyed_wherever_it_comes(run: Run, at: int) -> None:
 
     stopped.progress = progress
     with pytest.raises(Cancelled):
-        stopped.run_all()
+        stopped.run_all(FOUR)
     assert len(told) == at
-    stopped.run_all()
-    assert [stopped.status(s) for s in all_stages()] == ["done"] * 4
+    stopped.run_all(FOUR)
+    assert [stopped.status(s) for s in FOUR] == ["done"] * 4
 
 
 def test_a_tall_stack_named_from_top_to_bottom_is_placed(run: Run, answers: Any) -> None:
@@ -108,7 +110,7 @@ def test_a_tall_stack_named_from_top_to_bottom_is_placed(run: Run, answers: Any)
         book.update(id=f"book_{number}", category="book", parent=f"book_{number - 1}" if number > 1 else "stand")
         book["size_m"] = {"width": 0.2, "depth": 0.2, "height": 0.02}
         answers.by_key["01_analysis"]["objects"].append(book)
-    run.run_all()
+    run.run_all(FOUR)
     assert set(states(run).values()) == {"placed"}
     assert not any(p.key == "04_auxiliary" for p in answers.asked)
 
@@ -123,12 +125,12 @@ def test_open_things_may_stand_on_one_another(run: Run, answers: Any, cup: dict[
         answers.by_key["01_analysis"]["objects"].append(thing)
     answered = [{"id": "tray", "placement": "floor", "parent": None, "base_m": 0}]
     answers.by_key["04_auxiliary"] = {"placements": [*([{"id": "cup", **cup}] if cup else []), *answered]}
-    run.run_all()
+    run.run_all(FOUR)
     assert states(run)["cup"] == states(run)["tray"] == "placed"
 
 
 def test_an_empty_room_is_a_room(run: Run, answers: Any) -> None:
     answers.by_key["01_analysis"]["objects"] = []
-    run.run_all()
+    run.run_all(FOUR)
     found = run.memory.latest(LayoutProgram)
     assert found is not None and found.ledger == [] and len(evaluate(found.text).walls) == 4

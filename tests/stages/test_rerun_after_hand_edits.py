@@ -14,7 +14,8 @@ from code_as_room.pipeline.run import Run
 from code_as_room.pipeline.stages import all_stages
 from code_as_room.pipeline.stages.base import Stage
 
-ANALYSIS, GRAPH, LAYOUT, AUXILIARY = all_stages()
+FOUR = all_stages()[:4]
+ANALYSIS, GRAPH, LAYOUT, AUXILIARY = FOUR
 
 
 def edit(op: Any, identifier: str, **values: Any) -> LayoutEdit:
@@ -48,7 +49,7 @@ def again(run: Run, *stages: Stage) -> None:
 
 
 def test_renamed_objects_stay_placed_and_carry_what_stood_on_them(run: Run, scene: Any) -> None:
-    run.run_all()
+    run.run_all(FOUR)
     scene.edits = [edit("rename", i, new_id=f"my_{i}") for i in ("stand", "chair", "rug")]
     again(run)
     found = proxies(run)
@@ -59,7 +60,7 @@ def test_renamed_objects_stay_placed_and_carry_what_stood_on_them(run: Run, scen
 
 
 def test_what_was_removed_by_hand_is_dropped_in_the_ledger(run: Run, scene: Any, answers: Any) -> None:
-    run.run_all()
+    run.run_all(FOUR)
     scene.edits = [edit("remove", "rug"), edit("remove", "bed"), edit("remove", "lamp"), edit("remove", "stand")]
     answers.asked.clear()
     again(run)
@@ -70,7 +71,7 @@ def test_what_was_removed_by_hand_is_dropped_in_the_ledger(run: Run, scene: Any,
 
 
 def test_an_added_and_renamed_object_is_there_once(run: Run, scene: Any, answers: Any) -> None:
-    run.run_all()
+    run.run_all(FOUR)
     scene.edits = [box("new", (1.0, -1.0, 0.15)), edit("rename", "new", new_id="crate")]
     side = next(o["box"] for o in answers.by_key["01_analysis"]["objects"] if o["id"] == "chair")
     shifted = {k: v + (12 if k.startswith("x") else 0) for k, v in side.items()}
@@ -80,7 +81,7 @@ def test_an_added_and_renamed_object_is_there_once(run: Run, scene: Any, answers
 
 
 def test_a_copy_that_took_the_old_name_does_not_take_the_old_edits(run: Run, scene: Any) -> None:
-    run.run_all()
+    run.run_all(FOUR)
     scene.edits = [edit("move", "chair", centre=(1.2, -1.3, 0.4)), edit("rename", "chair", new_id="seat")]
     run.take_over_edits()
     scene.edits = [box("chair", (-1.0, -1.0, 0.15))]
@@ -93,7 +94,7 @@ def test_a_copy_that_took_the_old_name_does_not_take_the_old_edits(run: Run, sce
 def test_what_the_critic_adds_does_not_take_the_place_of_what_was_added_by_hand(
     run: Run, scene: Any, answers: Any
 ) -> None:
-    run.run_all()
+    run.run_all(FOUR)
     scene.edits = [box("pouf", (1.0, -1.0, 0.15))]
     spot = {"x_min": 380, "y_min": 700, "x_max": 450, "y_max": 790}
     size = {"width": 0.4, "depth": 0.4, "height": 0.4}
@@ -107,7 +108,7 @@ def test_what_the_critic_adds_does_not_take_the_place_of_what_was_added_by_hand(
 
 
 def test_a_copy_on_something_minor_survives_a_new_layout(run: Run, scene: Any) -> None:
-    run.run_all()
+    run.run_all(FOUR)
     scene.edits = [box("copy", (0.2, 0.2, 0.16), parent="rug", placement="surface")]
     again(run)
     assert proxies(run)["copy"].parent == "rug"
@@ -124,7 +125,7 @@ def test_what_stands_on_a_moved_object_moves_with_it(run: Run, scene: Any) -> No
 
 
 def test_everything_locked_stays_bit_exact(run: Run, scene: Any) -> None:
-    run.run_all()
+    run.run_all(FOUR)
     before = proxies(run)
     scene.edits = [edit("move", i, centre=p.centre) for i, p in before.items()]
     again(run)
@@ -133,7 +134,7 @@ def test_everything_locked_stays_bit_exact(run: Run, scene: Any) -> None:
 
 @pytest.mark.parametrize("count", range(7))
 def test_a_layout_that_holds_a_part_of_the_edits_gets_the_rest(run: Run, count: int) -> None:
-    run.run_all()
+    run.run_all(FOUR)
     layout = parse_layout(program(run).text)
     edits = [
         edit("move", "chair", centre=(1.2, -1.3, 0.4)),
@@ -150,7 +151,7 @@ def test_a_layout_that_holds_a_part_of_the_edits_gets_the_rest(run: Run, count: 
 
 
 def test_a_stopped_second_run_leaves_the_room_that_stood(run: Run, answers: Any, scene: Any) -> None:
-    run.run_all()
+    run.run_all(FOUR)
     scene.edits = [edit("move", "chair", centre=(1.2, -1.3, 0.4))]
     run.take_over_edits()
     stood = scene.text
@@ -162,5 +163,5 @@ def test_a_stopped_second_run_leaves_the_room_that_stood(run: Run, answers: Any,
     answers.by_key["03_critique"] = stop
     run.memory.settings["iterations"] = "4"
     with pytest.raises(Cancelled):
-        run.run_all()
+        run.run_all(FOUR)
     assert len(scene.built) > 3 and scene.text == stood

@@ -14,6 +14,8 @@ from code_as_room.pipeline.memory import EntryMeta, Memory, dump_memory
 from code_as_room.pipeline.run import Run
 from code_as_room.pipeline.stages import all_stages
 
+FOUR = all_stages()[:4]
+
 
 @pytest.fixture
 def journal(tmp_path: Path) -> Journal:
@@ -26,16 +28,16 @@ def anew(run: Run, journal: Journal) -> Run:
 
 
 def statuses(run: Run) -> list[str]:
-    return [run.status(stage) for stage in all_stages()]
+    return [run.status(stage) for stage in FOUR]
 
 
 def test_a_whole_run_can_be_had_again_without_asking_anything(run: Run, answers: Any, journal: Journal) -> None:
     run.journal = journal
-    run.run_all()
+    run.run_all(FOUR)
     asked = len(answers.asked)
     again = anew(run, journal)
     assert statuses(again) == ["answered", "not run", "not run", "not run"]
-    again.run_all()
+    again.run_all(FOUR)
     assert len(answers.asked) == asked and statuses(again) == ["done"] * 4
     assert again.backend.program_text() == run.backend.program_text()
     assert again.memory.cost() == run.memory.cost(), "memory has everything that was paid for"
@@ -58,12 +60,12 @@ def test_a_crash_after_any_answer_repeats_none(run: Run, answers: Any, journal: 
     run.journal = journal
     died = False
     try:
-        run.run_all()
+        run.run_all(FOUR)
     except RoomError:
         died = True
     answers.answer = answer
     resumed = anew(run, journal)
-    resumed.run_all()
+    resumed.run_all(FOUR)
     hashes = [prompt.hash for prompt in answers.asked]
     assert died == (number < len(hashes)) and len(set(hashes)) == len(hashes)
     assert statuses(resumed) == ["done"] * 4
@@ -73,7 +75,7 @@ def test_a_stage_that_was_undone_is_answered_and_one_whose_inputs_changed_is_not
     run: Run, answers: Any, journal: Journal
 ) -> None:
     run.journal = journal
-    first, second = all_stages()[:2]
+    first, second = FOUR[:2]
     run.run_stage(first)
     before = list(run.memory.entries)
     run.run_stage(second)
@@ -91,11 +93,11 @@ def test_a_stage_that_was_undone_is_answered_and_one_whose_inputs_changed_is_not
 
 def test_another_client_is_not_given_the_answers_of_the_first(run: Run, answers: Any, journal: Journal) -> None:
     run.journal = journal
-    run.run_stage(all_stages()[0])
+    run.run_stage(FOUR[0])
     other = anew(run, journal)
     other.client = replace(answers, name="another", asked=[])
     assert statuses(other)[0] == "not run"
-    other.run_stage(all_stages()[0])
+    other.run_stage(FOUR[0])
     assert other.client.asked  # type: ignore[attr-defined]
 
 
@@ -110,15 +112,15 @@ def test_an_answer_after_a_cut_one_is_kept_under_the_question(run: Run, answers:
 
     answers.answer = first_is_cut
     run.journal = journal
-    run.run_stage(all_stages()[0])
+    run.run_stage(FOUR[0])
     asked = len(answers.asked)
-    anew(run, journal).run_stage(all_stages()[0])
+    anew(run, journal).run_stage(FOUR[0])
     assert len(answers.asked) == asked
 
 
 def test_neither_picture_nor_path_gets_into_the_journal(run: Run, journal: Journal) -> None:
     run.journal = journal
-    run.run_all()
+    run.run_all(FOUR)
     text = journal.path.read_text()
     assert str(journal.path.parent) not in text and "base64" not in text
     assert len(text) < 3 * len(dump_memory(run.memory)), "answers, and not what was sent for them"

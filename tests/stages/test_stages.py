@@ -16,7 +16,8 @@ from code_as_room.pipeline.program.lines import parse_layout
 from code_as_room.pipeline.run import Run
 from code_as_room.pipeline.stages import all_stages
 
-ANALYSIS, GRAPH, LAYOUT, AUXILIARY = all_stages()
+FOUR = all_stages()[:4]
+ANALYSIS, GRAPH, LAYOUT, AUXILIARY = FOUR
 
 
 def layout_of(run: Run) -> dict[str, Any]:
@@ -26,7 +27,7 @@ def layout_of(run: Run) -> dict[str, Any]:
 
 
 def test_a_model_that_sees_perfectly_gives_the_true_room(run: Run, analysis: SceneAnalysis) -> None:
-    run.run_all()
+    run.run_all(FOUR)
     found = layout_of(run)
     for true in analysis.objects:
         proxy = found[true.id]
@@ -37,7 +38,7 @@ def test_a_model_that_sees_perfectly_gives_the_true_room(run: Run, analysis: Sce
 
 
 def test_everything_detected_is_in_the_ledger_once(run: Run, analysis: SceneAnalysis) -> None:
-    run.run_all()
+    run.run_all(FOUR)
     program = run.memory.latest(LayoutProgram)
     assert program is not None
     assert [e.id for e in program.ledger] == [o.id for o in analysis.objects]
@@ -45,7 +46,7 @@ def test_everything_detected_is_in_the_ledger_once(run: Run, analysis: SceneAnal
 
 
 def test_calls_and_prompts_stay_within_the_budget(run: Run) -> None:
-    reports = run.run_all()
+    reports = run.run_all(FOUR)
     iterations = run.memory.latest(LayoutProgram, ("s03_layout",)).iterations  # type: ignore[union-attr]
     assert sum(r.calls for r in reports) <= 4 + 2 * len(iterations)
     assert max(r.largest_prompt for r in reports) < 40_000
@@ -69,16 +70,16 @@ def test_a_stage_before_its_inputs_says_what_to_do(run: Run) -> None:
 
 
 def test_stale_marks_follow_a_change_upstream(run: Run) -> None:
-    run.run_all()
-    assert [run.status(s) for s in all_stages()] == ["done"] * 4
-    assert run.run_all() == []
+    run.run_all(FOUR)
+    assert [run.status(s) for s in FOUR] == ["done"] * 4
+    assert run.run_all(FOUR) == []
     run.memory.settings["notes"] = "A guest room."
-    assert [run.status(s) for s in all_stages()] == ["stale", "done", "done", "done"]
+    assert [run.status(s) for s in FOUR] == ["stale", "done", "done", "done"]
     run.memory.settings["iterations"] = "2"
-    assert [run.status(s) for s in all_stages()] == ["stale", "done", "stale", "done"]
+    assert [run.status(s) for s in FOUR] == ["stale", "done", "stale", "done"]
     run.memory.settings["known_width_m"] = "5.0"
-    run.run_all()
-    assert [run.status(s) for s in all_stages()] == ["done"] * 4
+    run.run_all(FOUR)
+    assert [run.status(s) for s in FOUR] == ["done"] * 4
     width = max(p[0] for p in run.memory.latest(Calibration).floor) * 2  # type: ignore[union-attr]
     assert width == pytest.approx(5.0, abs=0.01)
 
@@ -120,12 +121,12 @@ def test_stopping_in_the_loop_keeps_earlier_stages(run: Run, answers: Any) -> No
     answers.by_key["03_critique"] = stop
     with pytest.raises(Cancelled):
         run.run_stage(LAYOUT)
-    assert [run.status(s) for s in all_stages()] == ["done", "done", "not run", "not run"]
+    assert [run.status(s) for s in FOUR] == ["done", "done", "not run", "not run"]
     assert load_memory(run.backend.load_memory()) == run.memory
 
 
 def test_hand_edits_win_over_the_critic(run: Run, answers: Any, scene: Any) -> None:
-    run.run_all()
+    run.run_all(FOUR)
     moved = LayoutEdit(op="move", id="chair", centre=(1.2, -1.3, 0.4), origin="artist")
     gone = LayoutEdit(op="remove", id="stand", origin="artist")
     scene.edits = [moved, gone]
@@ -157,7 +158,7 @@ def test_the_critic_mends_a_wrong_box_and_the_best_round_is_kept(
         return {"score": 80, "edits": edits}
 
     answers.by_key["03_critique"] = critic
-    run.run_all()
+    run.run_all(FOUR)
     program = run.memory.latest(LayoutProgram, ("s03_layout",))
     assert program is not None and len(program.iterations) == len(rounds) == 2 and program.best == 1
     first, last = (parse_layout(i.program).proxy("bed") for i in program.iterations)
@@ -174,7 +175,7 @@ def test_the_artist_limits_the_rounds(run: Run, answers: Any, allowed: str, aske
     edit = {"op": "move", "id": "closet", "box": moved}
     answers.by_key["03_critique"] = lambda p: {"score": 50, "edits": [edit] if p.key.endswith("/0") else []}
     run.memory.settings["iterations"] = allowed
-    run.run_all()
+    run.run_all(FOUR)
     assert sum(p.key.startswith("03_critique") for p in answers.asked) == asked
 
 
@@ -190,7 +191,7 @@ def test_nonsense_from_the_critic_changes_nothing(run: Run, answers: Any) -> Non
             {"op": "add", "id": "x", "category": "sofa"},
         ],
     }
-    run.run_all()
+    run.run_all(FOUR)
     program = run.memory.latest(LayoutProgram, ("s03_layout",))
     assert program is not None and len(program.iterations) == 1
     assert len(program.iterations[0].refused) == 6 and program.iterations[0].edits == []
@@ -209,12 +210,12 @@ def test_an_unusable_first_answer_is_an_error_in_words(run: Run, answers: Any, t
 
 def test_one_broken_object_does_not_cost_the_others(run: Run, answers: Any) -> None:
     answers.by_key["01_analysis"]["objects"][0]["centre_m"] = {"x_m": None, "y_m": "left"}
-    run.run_all()
+    run.run_all(FOUR)
     assert len(layout_of(run)) == 6
 
 
 def test_surface_and_wall_objects_touch_what_carries_them(run: Run) -> None:
-    run.run_all()
+    run.run_all(FOUR)
     found = layout_of(run)
     lamp, stand, art = found["lamp"], found["stand"], found["art"]
     top = stand.centre[2] + stand.size[2] / 2
@@ -227,7 +228,7 @@ def test_an_orphan_is_asked_about_once_and_deferred_when_it_stays_open(run: Run,
     for item in answers.by_key["01_analysis"]["objects"]:
         if item["id"] == "lamp":
             item.update(parent=None, box={"x_min": 700, "y_min": 480, "x_max": 720, "y_max": 500})
-    run.run_all()
+    run.run_all(FOUR)
     assert sum(p.key == "04_auxiliary" for p in answers.asked) == 1
     ledger = {e.id: e for e in run.memory.latest(LayoutProgram).ledger}  # type: ignore[union-attr]
     assert ledger["lamp"].state == "deferred" and ledger["lamp"].reason

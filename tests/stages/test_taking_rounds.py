@@ -15,17 +15,18 @@ from code_as_room.pipeline.run_corrections import correct
 from code_as_room.pipeline.run_rounds import take_round
 from code_as_room.pipeline.stages import all_stages
 
-ANALYSIS, GRAPH, LAYOUT, AUXILIARY = all_stages()
+FOUR = all_stages()[:4]
+ANALYSIS, GRAPH, LAYOUT, AUXILIARY = FOUR
 
 
 @pytest.fixture
 def looped(run: Run, answers: Any) -> Run:
     """A room whose loop tried a second round, in which the chair stands elsewhere, and kept the first."""
     chair = next(o for o in answers.by_key["01_analysis"]["objects"] if o["id"] == "chair")
-    elsewhere = {k: v + (40 if k.startswith("x") else 0) for k, v in chair["box"].items()}
+    elsewhere = {k: v + (6 if k.startswith("x") else 0) for k, v in chair["box"].items()}
     asked = [{"op": "move", "id": "chair", "box": elsewhere}]
     answers.by_key["03_critique"] = lambda p: {"score": 50, "edits": asked if p.key.endswith("/0") else []}
-    run.run_all()
+    run.run_all(FOUR)
     return run
 
 

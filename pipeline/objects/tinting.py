@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which colour of the picture goes to which material role of a library piece.
+
+A piece's roles are weighed by what a camera above it sees of them; the colours by their share of the object in the
+picture. Large goes to large, and a colour rather to a role that is usually like it.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from ..artifacts.objects import MeasuredColour, ObjectDescription
+from ..program.prelude.palette import ROLE_COLOURS, split_role
+from ..program.prelude.shape import Shape
+from .colours import colour_distance, from_code, lightness, to_code
+
+FIXED = frozenset({
+    "glass", "mirror", "metal", "steel", "brass", "rubber", "screen", "soil", "water", "paper", "marker",
+})  # fmt: skip
+"""Roles that look the same on everything; the picture's reflections in them say little."""
+_CELLS = 72
+_SURE = 0.18
+"""An object of which less is seen keeps its usual colours."""
+
+
+def seen_from_above(shapes: Sequence[Shape]) -> dict[str, float]:
+    """The share of each material role in what a camera above sees of the shapes; roles without their own colours."""
+    points, roles = _top_samples(shapes)
+    if not len(points):
+        return {}
+    low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
+    cells = np.clip(((points[:, :2] - low) / np.maximum(high - low, 1e-6) * _CELLS).astype(int), 0, _CELLS - 1)
+    flat = cells[:, 0] * _CELLS + cells[:, 1]
+    order = np.lexsort((points[:, 2], flat))
+    flat, roles = flat[order], roles[order]
+    tops = roles[np.append(flat[1:] != flat[:-1], True)]
+    names = list(dict.fromkeys(split_role(shape.material)[0] for shape in shapes))
+    counts = np.bincount(tops, minlength=len(names))
+    return {name: float(count / counts.sum()) for name, count in zip(names, counts, strict=True) if count}
+
+
+def _top_samples(shapes: Sequence[Shape]) -> tuple[Any, Any]:
+    """Points spread over all faces that look up, and the number of the role that each belongs to."""
+    names = list(dict.fromkeys(split_role(shape.material)[0] for shape in shapes))
+    spots, roles = [], []
+    extent = (
+        np.ptp(np.concatenate([s.vertices[:, :2] for s in shapes if len(s.vertices)]), axis=0) if shapes else (1, 1)
+    )
+    cell = max(float(extent[0] * extent[1]), 1e-6) / _CELLS**2
+    for shape in shapes:
+        corners = [(f[0], f[i], f[i + 1]) for f in shape.faces for i in range(1, len(f) - 1)]
+        if not corners:
+            continue
+        a, b, c = (shape.vertices[[t[k] for t in corners]] for k in range(3))
+        up = 0.5 * ((b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0]))
+        count = np.where(up > 0, np.clip(np.ceil(2.0 * up / cell), 1, 4000), 0).astype(int)
+        which = np.repeat(np.arange(len(corners)), count)
+        step = np.arange(len(which))
+        u, v = (step * 0.7548776662) % 1.0, (step * 0.5698402910) % 1.0
+        over = u + v > 1
+        u, v = np.where(over, 1 - u, u), np.where(over, 1 - v, v)
+        spots.append(a[which] + u[:, None] * (b - a)[which] + v[:, None] * (c - a)[which])
+        roles.append(np.full(len(which), names.index(split_role(shape.material)[0])))
+    if not spots:
+        return np.zeros((0, 3)), np.zeros(0, dtype=int)
+    return np.concatenate(spots), np.concatenate(roles)
+
+
+def tints_for(seen: Mapping[str, float], described: ObjectDescription) -> dict[str, str]:
+    """A colour "#RRGGBB" for each role of a piece that the picture tells one for.
+
+    Args:
+        seen: the piece's roles with their shares, as `seen_from_above`.
+    """
+    colours = list(described.measured) if described.seen >= _SURE else []
+    if not colours and described.code:
+        colours = [MeasuredColour(code=described.code, share=1.0)]
+    free = {role: share for role, share in seen.items() if role not in FIXED and share > 0.02}
+    if not colours or not free:
+        return {}
+    roles = sorted(free, key=lambda role: -free[role])[:4]
+    total = sum(free[role] for role in roles)
+    best = min(_pairings(roles, colours), key=lambda pairs: _cost(pairs, free, total, colours))
+    found = {role: f"#{calm(colour.code)}" for role, colour in best if _may(role, colour.code)}
+    return found
+
+
+def _pairings(roles: Sequence[str], colours: Sequence[MeasuredColour]) -> list[list[tuple[str, MeasuredColour]]]:
+    """All ways to give the largest role and some others a colour each; colours may be left over."""
+    count = min(len(roles), len(colours))
+    return [
+        list(zip(chosen, given, strict=True))
+        for chosen in itertools.combinations(roles, count)
+        if roles[0] in chosen
+        for given in itertools.permutations(colours, count)
+    ]
+
+
+def _cost(
+    pairs: Sequence[tuple[str, MeasuredColour]],
+    free: Mapping[str, float],
+    total: float,
+    colours: Sequence[MeasuredColour],
+) -> float:
+    cost = 0.0
+    for role, colour in pairs:
+        usual = ROLE_COLOURS[role][0] if role in ROLE_COLOURS else "A9A39B"
+        likeness = 3.0 if role == "shade" else 1.0  # lamps shine: their shades are light whatever else they are
+        cost += 1.2 * abs(free[role] / total - colour.share) + likeness * colour_distance(usual, colour.code)
+    return cost + sum(c.share for c in colours if c not in [colour for _, colour in pairs]) * 0.8
+
+
+def _may(role: str, code: str) -> bool:
+    """Leaves stay green: what is measured between them is the floor or a shadow."""
+    if role != "foliage":
+        return True
+    red, green, blue = from_code(code)
+    return bool(green > red and green > 1.1 * blue)
+
+
+def calm(code: str) -> str:
+    """The colour neither as black nor as white as no material is."""
+    light = lightness(code)
+    if light < 0.2:
+        return to_code(from_code(code) * 0.6 + 0.008)
+    return to_code(np.minimum(from_code(code), 0.86)) if light > 0.96 else code

@@ -1,0 +1,220 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What stage 6 asks the model: which library pieces, or programs of its own, which it then sees rendered and mends once."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Sequence
+from typing import Any
+
+from ..artifacts.analysis import Calibration, SceneAnalysis
+from ..artifacts.layout import ProxyLine
+from ..artifacts.objects import PiecesReply, ProgramReply, ProgramsReply
+from ..errors import ProgramError
+from ..library import catalogue
+from ..objects.asking import batches, crop_of, object_line, picture_box
+from ..objects.choose import candidates
+from ..objects.detailing import Detailing
+from ..objects.examples import nearest_programs
+from ..objects.written import Written, take_program
+from ..program.prelude.palette import ROLE_COLOURS, category_family
+from ..program.reference import reference
+from .base import View
+from .wishes import Ask, Picture, Portrait, Request, Tell, Wish
+
+BATCH = 5
+MOST_PROGRAMS = 25
+"""Objects that get programs of their own; the smallest of more have library pieces."""
+_CANDIDATES = 3
+_BETTER = 0.02
+Asking = Generator[Wish, Any, None]
+
+
+def choose_pieces(view: View, detailing: Detailing) -> Asking:
+    """One request for the whole room: which library piece for each object, with which parameters."""
+    analysis, calibration = view.need(SceneAnalysis), view.need(Calibration)
+    things = detailing.todo
+    boxes = [(str(n), box) for n, p in enumerate(things, 1) if (box := picture_box(p, calibration.camera, analysis))]
+    near = {c.piece.name: c.piece for p in things for c in candidates(p, "", category_family(p.category))[:_CANDIDATES]}
+    pieces = "\n".join(_piece_lines(piece) for piece in near.values())
+    others = ", ".join(name for name in catalogue.pieces() if name not in near)
+    lines = [_line(detailing, n, p) for n, p in enumerate(things, 1)]
+    request = Request(
+        key="06_pieces",
+        prompt="06_pieces",
+        reply=PiecesReply,
+        values={
+            "objects": "\n".join(lines) + view.noted(p.id for p in things),
+            "pieces": pieces,
+            "others": others,
+            "style": detailing.style.style or "not known",
+        },
+        images=(Picture("room", view.reference.with_boxes_drawn(boxes, long_side=1280)),),
+    )
+    [reply] = yield Ask((request,), optional=True)
+    if reply is None:
+        detailing.notes |= {p.id: "The model chose no piece; this one was chosen by name and size." for p in things[:1]}
+        return
+    detailing.take_pieces(reply.objects)
+
+
+def _piece_lines(piece: catalogue.Piece) -> str:
+    lines = [f"{piece.name}: {piece.title}"]
+    lines += [f"  {name}={default}: {meaning}" for name, (default, meaning) in piece.parameters.items()]
+    return "\n".join(lines)
+
+
+def _line(detailing: Detailing, number: int, proxy: ProxyLine) -> str:
+    described = detailing.described(proxy.id)
+    parent = detailing.layout.proxy(proxy.parent) if proxy.parent else None
+    line = object_line(number, proxy, described, parent)
+    return f"{line}; {described.words}" if described.words else line
+
+
+def write_programs(view: View, detailing: Detailing) -> Asking:
+    """Programs for the larger objects in two rounds: written from the crops, then mended once after a look at renders."""
+    chosen = sorted(detailing.todo, key=lambda p: -_weight(p))[:MOST_PROGRAMS]
+    chosen.sort(key=lambda p: (category_family(p.category), p.category, p.id))
+    groups = batches(chosen, BATCH)
+    requests = tuple(_first_request(view, detailing, n, batch) for n, batch in enumerate(groups, 1))
+    answers = yield Ask(requests, optional=True)
+    replies = {o.id: o for reply in answers if reply is not None for o in reply.objects}
+    if not any(reply.program.strip() for reply in replies.values()):
+        if any(answer is not None for answer in answers) or not answers:
+            return
+        detailing.notes |= {
+            p.id: "No program was written for it; the library's piece stands for it." for p in chosen[:1]
+        }
+        return
+    drafts = {p.id: _Draft(p, replies.get(p.id)) for p in chosen}
+    for draft in drafts.values():
+        draft.take(detailing)
+    yield Tell("Looking at the objects", 2, 3)
+    for draft in drafts.values():
+        if draft.made is not None:
+            draft.render = yield Portrait(draft.made.shapes, category_family(draft.proxy.category))
+    asked = [[drafts[p.id] for p in batch if drafts[p.id].written_by_model] for batch in groups]
+    asked = [batch for batch in asked if batch]
+    corrections = yield Ask(
+        tuple(_second_request(view, detailing, n, b) for n, b in enumerate(asked, 1)), optional=True
+    )
+    better = {o.id: o for reply in corrections if reply is not None for o in reply.objects}
+    for draft in drafts.values():
+        draft.mend(detailing, better.get(draft.proxy.id))
+        draft.keep(detailing)
+
+
+def _weight(proxy: ProxyLine) -> float:
+    """How much an object counts in a picture of the room: large furniture first."""
+    w, d, h = proxy.size
+    return (w * d + w * h + d * h) * (2.0 if proxy.salience == "major" else 1.0)
+
+
+class _Draft:
+    """One object's program on its way.
+
+    Attributes:
+        made: the best version that can be used so far; problem: why the last one could not be.
+    """
+
+    def __init__(self, proxy: ProxyLine, reply: ProgramReply | None) -> None:
+        self.proxy = proxy
+        self.source = reply.program.strip() if reply is not None else ""
+        self.made: Written | None = None
+        self.problem = ""
+        self.render = b""
+
+    @property
+    def written_by_model(self) -> bool:
+        """Whether there is anything to mend."""
+        return bool(self.source)
+
+    def take(self, detailing: Detailing) -> None:
+        """Evaluate and check what was written."""
+        if self.source:
+            self.made, self.problem = self._evaluated(detailing, self.source)
+
+    def mend(self, detailing: Detailing, reply: ProgramReply | None) -> None:
+        """Take a correction where it is better by the checks, or as good: it was written after a look."""
+        if reply is None or reply.keep or not reply.program.strip():
+            return
+        made, problem = self._evaluated(detailing, reply.program)
+        if made is None:
+            self.problem = self.problem or problem
+        elif self.made is None or made.checked.penalty <= self.made.checked.penalty + _BETTER:
+            self.made, self.problem = made, ""
+
+    def keep(self, detailing: Detailing) -> None:
+        """Hand over what can be used; the library's piece stays where nothing can."""
+        identifier = self.proxy.id
+        if self.made is not None and self.made.checked.penalty < 1.0:
+            detailing.written[identifier] = self.made
+            return
+        worst = self.problem or (self.made.checked.findings[0] if self.made is not None else "none was written")
+        detailing.notes[identifier] = (
+            f"Its program could not be used ({worst[:160].rstrip('.')}); a library piece is there."
+        )
+
+    def _evaluated(self, detailing: Detailing, source: str) -> tuple[Written | None, str]:
+        name = detailing.names[self.proxy.id]
+        taken = {*detailing.standing.defs, *(n for i, n in detailing.names.items() if i != self.proxy.id)}
+        try:
+            return take_program(source, self.proxy, name, taken), ""
+        except ProgramError as error:
+            return None, str(error)
+
+    def told(self) -> str:
+        """The program and what is wrong with it, for the second round."""
+        checked = self.made.checked.findings if self.made is not None else (self.problem,)
+        wrong = "\n".join(f"- {sentence}" for sentence in checked if sentence) or "- nothing was measured to be wrong"
+        return (
+            f"{self.proxy.id}, box {' x '.join(f'{v:.2f}' for v in self.proxy.size)}\n{wrong}\n```\n{self.source}\n```"
+        )
+
+
+def _first_request(view: View, detailing: Detailing, number: int, batch: Sequence[ProxyLine]) -> Request:
+    analysis, calibration = view.need(SceneAnalysis), view.need(Calibration)
+    boxes = {p.id: picture_box(p, calibration.camera, analysis) for p in batch}
+    shown = [(p, box) for p in batch if (box := boxes[p.id]) is not None]
+    numbers = {p.id: n for n, p in enumerate(batch, 1)}
+    whole = view.reference.with_boxes_drawn([(str(numbers[p.id]), box) for p, box in shown], long_side=900)
+    lines = [f"{_line(detailing, numbers[p.id], p)}; name the def {detailing.names[p.id]}" for p in batch]
+    return Request(
+        key=f"06_programs/{number}",
+        prompt="06_programs",
+        reply=ProgramsReply,
+        values={
+            "reference": reference(),
+            "roles": ", ".join(ROLE_COLOURS),
+            "style": detailing.style.style or "not known",
+            "objects": "\n".join(lines) + view.noted(p.id for p in batch),
+            "crops": ", ".join(str(numbers[p.id]) for p, _ in shown) or "none",
+            "examples": nearest_programs(batch),
+        },
+        images=(Picture("room", whole), *(Picture(p.id, crop_of(view.reference, box)) for p, box in shown)),
+    )
+
+
+def _second_request(view: View, detailing: Detailing, number: int, batch: Sequence[_Draft]) -> Request:
+    analysis, calibration = view.need(SceneAnalysis), view.need(Calibration)
+    images: list[Picture] = []
+    order = []
+    for draft in batch:
+        box = picture_box(draft.proxy, calibration.camera, analysis)
+        if box is not None:
+            images.append(Picture(draft.proxy.id, crop_of(view.reference, box)))
+            order.append(f"{draft.proxy.id} in the picture")
+        if draft.render:
+            images.append(Picture(f"{draft.proxy.id} render", draft.render))
+            order.append(f"{draft.proxy.id} as your program makes it, from the front and from above")
+    return Request(
+        key=f"06_correct/{number}",
+        prompt="06_correct",
+        reply=ProgramsReply,
+        values={
+            "reference": reference(),
+            "roles": ", ".join(ROLE_COLOURS),
+            "pictures": "; ".join(f"{n} {what}" for n, what in enumerate(order, 1)) or "none",
+            "objects": "\n\n".join(draft.told() for draft in batch),
+        },
+        images=tuple(images),
+    )

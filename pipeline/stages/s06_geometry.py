@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Stage 6, geometry: every proxy gets a function of its own that models it; the room's program furnishes it with that.
+
+Everything has its library piece first, in the picture's colours. A model may then choose better pieces, or write
+programs; what fails leaves the library piece in place, with a note.
+"""
+
+from __future__ import annotations
+
+import re
+
+from ..artifacts.analysis import Calibration, Finding, SceneAnalysis
+from ..artifacts.layout import Layout, LayoutProgram, LedgerEntry
+from ..artifacts.objects import Descriptions, Geometry, ObjectProgram, OwnModelling, RoomStyle
+from ..errors import RoomError
+from ..layout.hand import apply_hand_edits, name_now
+from ..objects.detailing import Detailing
+from ..program.lines import parse_layout
+from .base import Reads, Stage, View
+from .s06_asking import choose_pieces, write_programs
+from .wishes import Build, StageRun, Tell
+
+ID = "s06_geometry"
+_FURNISHED = re.compile(r'^(furnish\(\s*")([^"\\]+)(")', re.MULTILINE)
+
+
+def run(view: View) -> StageRun:
+    """Write the `LayoutProgram` with everything furnished, and `Geometry`, which says who modelled what."""
+    before = view.need(LayoutProgram)
+    layout, findings = apply_hand_edits(parse_layout(before.text), view.hand_edits, before.hand_edits)
+    standing, names = view.recall(LayoutProgram), _Names(view, layout)
+    if view.only is not None and standing is None:
+        raise RoomError("Nothing is modelled yet that could be kept.", "Run the whole stage first.")
+    detailing = Detailing.begin(
+        layout,
+        names.in_descriptions(view.need(Descriptions)),
+        view.need(RoomStyle),
+        names.in_text(standing.text) if standing is not None else "",
+        names.in_geometry(view.recall(Geometry) or Geometry()),
+        names.in_own(view.recall(OwnModelling) or OwnModelling()),
+        _kept(view, layout),
+    )
+    yield Tell("Choosing from the library", 1, 3)
+    detailing.from_library()
+    yield Tell("Modelling the objects", 2, 3)
+    if detailing.todo and view.settings.get("objects") == "programs":
+        yield from write_programs(view, detailing)
+    elif detailing.todo:
+        yield from choose_pieces(view, detailing)
+    text = detailing.sound_text()
+    geometry = detailing.geometry()
+    yield Tell("Building the room", 3, 3)
+    yield Build(text)
+    unusable = [f for f in findings if f.severity != "warning" or layout.proxy(f.about) is None]
+    program = before.model_copy(
+        update={
+            "text": text,
+            "stage": ID,
+            "ledger": [_ledger_line(view, entry, geometry) for entry in before.ledger],
+            "findings": [*before.findings, *(f for f in unusable if f not in before.findings)],
+            "iterations": [],
+            "hand_edits": len(view.hand_edits),
+        }
+    )
+    return [program, geometry.model_copy(update={"findings": [*geometry.findings, _summary(geometry)]})]
+
+
+class _Names:
+    """What objects that were renamed by hand since are called now."""
+
+    def __init__(self, view: View, layout: Layout) -> None:
+        self._present = {p.id for p in layout.proxies}
+        self._renames = [(e.id, e.new_id) for e in view.hand_edits if e.op == "rename" and e.new_id]
+
+    def now(self, identifier: str) -> str:
+        """The present id; the same one when nothing of that name is there any more."""
+        at = identifier
+        for old, new in self._renames:
+            if at == old and at not in self._present and new is not None:
+                at = new
+        return at
+
+    def in_descriptions(self, found: Descriptions) -> Descriptions:
+        """Descriptions under present ids."""
+        return found.model_copy(
+            update={"objects": [o.model_copy(update={"id": self.now(o.id)}) for o in found.objects]}
+        )
+
+    def in_geometry(self, found: Geometry) -> Geometry:
+        """Who modelled what under present ids."""
+        changed = [o.model_copy(update={"id": self.now(o.id), "like": self.now(o.like)}) for o in found.objects]
+        return found.model_copy(update={"objects": changed})
+
+    def in_own(self, own: OwnModelling) -> OwnModelling:
+        """What the artist says under present ids."""
+        functions = {self.now(i): self.in_text(code) for i, code in own.functions.items()}
+        return OwnModelling(functions=functions, boxes=[self.now(i) for i in own.boxes])
+
+    def in_text(self, text: str) -> str:
+        """Furnish statements of a text under present ids."""
+        return _FURNISHED.sub(lambda m: m[1] + self.now(m[2]) + m[3], text)
+
+
+def _kept(view: View, layout: Layout) -> frozenset[str]:
+    """Ids that stay as they are: what is not chosen, and what is locked."""
+    if view.only is None:
+        return view.locked
+    return frozenset(p.id for p in layout.proxies if not view.chosen(p.id))
+
+
+def _ledger_line(view: View, entry: LedgerEntry, geometry: Geometry) -> LedgerEntry:
+    """What became of a detected object by now."""
+    name = name_now(view.hand_edits, entry.id)
+    made = geometry.of(name) if name is not None else None
+    if name is None:
+        return entry.model_copy(update={"state": "dropped", "reason": entry.reason or "removed by hand"})
+    if entry.state not in ("placed", "detailed") or made is None:
+        return entry
+    if made.source == "proxy":
+        return entry.model_copy(update={"state": "placed", "reason": made.note})
+    return entry.model_copy(update={"state": "detailed", "reason": _how(made)})
+
+
+def _how(made: ObjectProgram) -> str:
+    words = {"program": "modelled by its own program", "artist": "modelled by your function"}
+    said = words.get(made.source, f"library: {made.piece.replace('_', ' ')}")
+    return f"{said}, like {made.like}" if made.like else said
+
+
+def _summary(geometry: Geometry) -> Finding:
+    counts = {s: sum(o.source == s for o in geometry.objects) for s in ("program", "library", "artist", "proxy")}
+    words = {"program": "by programs", "library": "from the library", "artist": "by you", "proxy": "left as boxes"}
+    said = ", ".join(f"{counts[s]} {words[s]}" for s in words if counts[s])
+    return Finding(about="objects", message=f"{len(geometry.objects)} objects: {said or 'none'}.")
+
+
+STAGE = Stage(
+    id=ID,
+    title="Geometry",
+    reads=(
+        Reads(SceneAnalysis),
+        Reads(Calibration),
+        Reads(LayoutProgram, ("s04_auxiliary",)),
+        Reads(Descriptions),
+        Reads(RoomStyle),
+    ),
+    writes=(LayoutProgram, Geometry),
+    run=run,
+    settings=("objects",),
+    notes=True,
+    partial=True,
+    recalls=(Reads(LayoutProgram, (ID,)), Reads(Geometry), Reads(OwnModelling)),
+)
