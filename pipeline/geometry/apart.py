@@ -20,9 +20,9 @@ from .polygon import Point, PolygonLike, ensure_ccw
 
 MARGIN = 2e-6
 """Metres that are left between what was taken apart, so that rounding does not join it again."""
-SWEEPS = 400
+SWEEPS = 250
 ROUNDS = 25
-TRIALS = 40
+TRIALS = 12
 """Other sides that are tried in all."""
 FEW = 12
 """Pairs that push, beyond which no other sides are tried: it would take too long."""

@@ -25,7 +25,7 @@ from .trim import trim
 
 SNAP = 0.035
 """A floor proxy nearer to a wall than this (or as deep in it) stands flush at it, metres, when nothing else is known."""
-LEAST_SNAP, MOST_SNAP = 0.02, 0.08
+LEAST_SNAP, MOST_SNAP = 0.01, 0.08
 LEAN_SNAP = 0.2
 """The same for a thing of which it is said that it stands against that wall."""
 TURN = 6.0
@@ -309,7 +309,7 @@ def _settled(rect: Rect, proxy: ProxyLine, layout: Layout, ties: Ties) -> tuple[
 
 def _snap_distance(identifier: str, wall: str, ties: Ties) -> float:
     spread = ties.spread.get(identifier)
-    usual = SNAP if spread is None else max(LEAST_SNAP, min(MOST_SNAP, 1.2 * spread))
+    usual = SNAP if spread is None else max(LEAST_SNAP, min(MOST_SNAP, spread))
     return max(usual, LEAN_SNAP) if (identifier, wall) in ties.leaning else usual
 
 

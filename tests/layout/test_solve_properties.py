@@ -146,7 +146,7 @@ def test_small_errors_cost_little_and_larger_ones_are_mended() -> None:
 def test_how_far_something_is_drawn_to_a_wall_depends_on_how_sure_its_place_is() -> None:
     near = thing("near", Rect(0.0, -1.64, 0.8, 0.6))
     layout = room(PLAIN, [near])
-    sure, unsure = (solve(layout, NONE, FREE, {}, Ties(spread={"near": s}))[0].proxies[0] for s in (0.01, 0.06))
+    sure, unsure = (solve(layout, NONE, FREE, {}, Ties(spread={"near": s}))[0].proxies[0] for s in (0.01, 0.075))
     assert sure == near and unsure.centre[1] == pytest.approx(-1.7, abs=1e-5)
     leaning = Ties(spread={"near": 0.01}, leaning=frozenset({("near", "wall_s")}))
     assert solve(layout, NONE, FREE, {}, leaning)[0].proxies[0].centre[1] == pytest.approx(-1.7, abs=1e-5)
