@@ -20,6 +20,7 @@ from code_as_room.pipeline.models.recorded import RecordedClient
 from code_as_room.pipeline.program.lines import parse_layout
 from code_as_room.pipeline.run_corrections import corrections_of
 from code_as_room.pipeline.scene.tags import ID, find_room_collection
+from code_as_room.pipeline.stages import all_stages
 
 SAMPLE = Path(__file__).resolve().parents[2] / "samples" / "bedroom"
 LENGTH = KnownLength(start=ImagePoint(x=300, y=300), end=ImagePoint(x=700, y=300), metres=3.5)
@@ -81,10 +82,10 @@ def test_a_known_length_scales_what_stands_and_all_stages_stay_done(scene: Any) 
     width = view_state.refresh(scene).room_size[0]
     correcting.apply(scene, lambda c: c.model_copy(update={"known_length": LENGTH}))
     factor = view_state.peek(scene).room_size[0] / width  # type: ignore[union-attr]
-    assert statuses(scene) == ["done"] * 4 and abs(factor - 1.0) > 0.05
+    assert statuses(scene) == ["done"] * len(all_stages()) and abs(factor - 1.0) > 0.05
     assert corrections_of(memory(scene)).known_length == LENGTH
     for name, size in before.items():
-        assert extent(scene, name) == pytest.approx([v * factor for v in size], rel=2e-3, abs=1e-3), name
+        assert extent(scene, name) == pytest.approx([v * factor for v in size], rel=1e-2, abs=1e-3), name
     assert not ResolvedScene(scene).read_back(), "the new sizes are no edits by hand"
     correcting.apply(scene, lambda c: Corrections())
     for name, size in before.items():
@@ -104,7 +105,7 @@ def test_what_was_moved_by_hand_is_taken_over_before_the_room_is_scaled(scene: A
     chair = next(o for o in find_room_collection(scene).all_objects if o.get(ID) == name)
     assert chair.matrix_world.translation.x == pytest.approx(2 * x, abs=1e-3)
     assert len([e for e in memory(scene).entries if e.type == "HandEdits"]) == 1
-    assert statuses(scene) == ["done"] * 4
+    assert statuses(scene) == ["done"] * len(all_stages())
 
 
 def test_what_the_artist_put_into_the_room_is_scaled_with_it_and_back(scene: Any) -> None:
@@ -123,7 +124,7 @@ def test_what_the_artist_put_into_the_room_is_scaled_with_it_and_back(scene: Any
     assert not ResolvedScene(scene).read_back()
     scene.code_as_room.use_known_width = False
     assert extent(scene, name) == pytest.approx([0.4, 0.3, 0.5], abs=1e-4)
-    assert len(mesh.vertices) == 8 and statuses(scene) == ["done"] * 4
+    assert len(mesh.vertices) == 8 and statuses(scene) == ["done"] * len(all_stages())
 
 
 def test_ticking_a_known_size_alone_changes_nothing(scene: Any) -> None:
@@ -133,12 +134,12 @@ def test_ticking_a_known_size_alone_changes_nothing(scene: Any) -> None:
     scene.code_as_room.use_wall_height = True
     assert scene.code_as_room.known_width == pytest.approx(size[0])
     assert scene.code_as_room.wall_height == pytest.approx(size[2])
-    assert standing(scene) == before and statuses(scene) == ["done"] * 4
+    assert standing(scene) == before and statuses(scene) == ["done"] * len(all_stages())
     scene.code_as_room.wall_height = size[2] + 0.4
     assert extent(scene, "wall_n")[2] == pytest.approx(high + 0.4, abs=1e-4)
     unmoved = parse_layout(ResolvedScene(scene).program_text()).proxies
     assert all(standing(scene)[p.id] == before[p.id] for p in unmoved if p.placement != "ceiling")
-    assert statuses(scene) == ["done"] * 4
+    assert statuses(scene) == ["done"] * len(all_stages())
 
 
 def test_a_locked_object_keeps_its_very_numbers_when_the_layout_is_done_again(
@@ -151,6 +152,8 @@ def test_a_locked_object_keeps_its_very_numbers_when_the_layout_is_done_again(
         monkeypatch.setattr(clients, patched, lambda *a, **k: RecordedClient(SAMPLE / "replies"))
     bpy.ops.code_as_room.run_stage(stage="s03_layout")
     bpy.ops.code_as_room.run_stage(stage="s04_auxiliary")
+    assert standing(scene)[name][0] == before[0]
+    bpy.ops.code_as_room.run_all()
     assert standing(scene)[name] == before
 
 
