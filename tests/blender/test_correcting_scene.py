@@ -78,14 +78,19 @@ def statuses(scene: Any) -> list[str]:
 
 
 def test_a_known_length_scales_what_stands_and_all_stages_stay_done(scene: Any) -> None:
-    before = {p.id: extent(scene, p.id) for p in parse_layout(ResolvedScene(scene).program_text()).proxies}
+    proxies = parse_layout(ResolvedScene(scene).program_text()).proxies
+    before, boxes = {p.id: extent(scene, p.id) for p in proxies}, {p.id: p.size for p in proxies}
     width = view_state.refresh(scene).room_size[0]
     correcting.apply(scene, lambda c: c.model_copy(update={"known_length": LENGTH}))
     factor = view_state.peek(scene).room_size[0] / width  # type: ignore[union-attr]
     assert statuses(scene) == ["done"] * len(all_stages()) and abs(factor - 1.0) > 0.05
     assert corrections_of(memory(scene)).known_length == LENGTH
     for name, size in before.items():
-        assert extent(scene, name) == pytest.approx([v * factor for v in size], rel=1e-2, abs=1e-3), name
+        # Seams and roundings of furniture have thicknesses of their own, so a turned thing's outline follows nearly.
+        assert extent(scene, name) == pytest.approx([v * factor for v in size], rel=5e-2, abs=1e-3), name
+    sizes = {p.id: p.size for p in parse_layout(ResolvedScene(scene).program_text()).proxies}
+    for name, size in boxes.items():
+        assert sizes[name] == pytest.approx([v * factor for v in size], rel=2e-3, abs=1e-3), name
     assert not ResolvedScene(scene).read_back(), "the new sizes are no edits by hand"
     correcting.apply(scene, lambda c: Corrections())
     for name, size in before.items():
