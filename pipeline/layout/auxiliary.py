@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from typing import TypeVar
 
 from ..artifacts.analysis import Calibration, DetectedObject, Finding
 from ..artifacts.layout import Layout, ProxyLine, WallLine
@@ -181,11 +182,14 @@ def crowded(proxy: ProxyLine, others: Sequence[ProxyLine]) -> str | None:
     return None
 
 
-def order_by_depth(items: Sequence[DetectedObject]) -> list[DetectedObject]:
-    """Parents before their children."""
+_Item = TypeVar("_Item", DetectedObject, ProxyLine)
+
+
+def order_by_depth(items: Sequence[_Item]) -> list[_Item]:
+    """Parents before their children; else in their order."""
     by_id = {i.id: i for i in items}
 
-    def level(item: DetectedObject) -> int:
+    def level(item: _Item) -> int:
         steps, parent = 0, item.parent
         while parent in by_id and steps < len(by_id):
             steps, parent = steps + 1, by_id[parent].parent

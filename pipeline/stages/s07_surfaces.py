@@ -112,7 +112,7 @@ class _Seating:
                 )
         carriers = Carriers(self.shapes)
         # What stays takes its place before anything else does.
-        for proxy in _parents_first(self.layout.proxies):
+        for proxy in order_by_depth(self.layout.proxies):
             if proxy.id not in open_ids:
                 carriers.add(proxy)
         for item in order_by_depth(sorted(open_ids.values(), key=lambda o: -o.size[0] * o.size[1])):
@@ -198,18 +198,6 @@ class _Seating:
         if name in self._reasons and entry.state == "deferred":
             return entry.model_copy(update={"state": "dropped", "reason": self._reasons[name]})
         return entry
-
-
-def _parents_first(proxies: list[ProxyLine]) -> list[ProxyLine]:
-    by_id = {p.id: p for p in proxies}
-
-    def depth(proxy: ProxyLine) -> int:
-        steps, parent = 0, proxy.parent
-        while parent in by_id and steps < len(by_id):
-            steps, parent = steps + 1, by_id[parent].parent
-        return steps
-
-    return sorted(proxies, key=depth)
 
 
 def _modelled(view: View, seating: _Seating, text: str, geometry: Geometry) -> tuple[str, Geometry]:

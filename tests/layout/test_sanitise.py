@@ -163,7 +163,11 @@ def test_no_answer_of_any_kind_raises(critic: Critic) -> None:
     zero = {"width": 0, "depth": -1, "height": 1e9}
     for op in ("move", "resize", "turn", "remove", "recategorise", "add"):
         for identifier in ("bed", "", "x" * 5000, "wall_n", "rug"):
-            critic.asks({"op": op, "id": identifier, "box": wild, "size_m": zero, "yaw_deg": 1e12, "base_m": -1e9})
+            wanted = critic.asks(
+                {"op": op, "id": identifier, "box": wild, "size_m": zero, "yaw_deg": 1e12, "base_m": -1e9}
+            )
+            assert not [e for e in wanted.edits if e.id == "wall_n"], "walls are nobody's to edit"
+            assert {o.id for o in wanted.evidence.objects.values()} >= {"chair"}, "one wild edit costs nothing else"
 
 
 def test_evidence_of_others_is_left_alone(critic: Critic) -> None:
