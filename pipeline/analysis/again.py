@@ -42,7 +42,7 @@ def described_anew(
     analysis = found.analysis
     findings: list[Finding] = []
     ids = {o.id for o in asked}
-    objects = with_corrections(analysis.objects, [c for c in reply.corrections if c.id in ids], findings)
+    objects = with_corrections(analysis.objects, [c for c in reply.corrections if c.id in ids], findings, crops)
     known = {o.id for o in objects}
     taken = {*known, *ids, *(a.id for a in analysis.architecture)}
     answered = set()

@@ -11,6 +11,7 @@ from PIL import Image
 from ..artifacts.analysis import DetectedObject, SceneAnalysis
 from ..artifacts.common import ImageBox
 from ..picture import ReferencePicture, encode_for_model
+from ..picture_boxes import draw_grid
 
 OVERLAP = 0.12
 MOST_SURFACES = 3
@@ -85,12 +86,12 @@ def _around(box: ImageBox) -> ImageBox:
 
 
 def enlarged(picture: ReferencePicture, part: ImageBox) -> bytes:
-    """A part of the picture, enlarged for the model when it is small."""
-    data = picture.crop(part, margin=0.0)
-    with Image.open(io.BytesIO(data)) as opened:
+    """A part of the picture with its own 0-1000 grid, enlarged for the model when it is small."""
+    with Image.open(io.BytesIO(picture.crop(part, margin=0.0))) as opened:
         image = opened.convert("RGB")
     factor = min(3.0, ENLARGED / max(image.size))
-    if factor <= 1.0:
-        return data
-    size = (max(1, round(image.width * factor)), max(1, round(image.height * factor)))
-    return encode_for_model(image.resize(size, Image.Resampling.LANCZOS))
+    if factor > 1.0:
+        size = (max(1, round(image.width * factor)), max(1, round(image.height * factor)))
+        image = image.resize(size, Image.Resampling.LANCZOS)
+    draw_grid(image)
+    return encode_for_model(image)

@@ -3,11 +3,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from ..artifacts.analysis import DetectedObject, Finding, SceneAnalysis
 from ..artifacts.common import ImageBox
-from ..artifacts.replies import BoxReply, CorrectionReply, MetresReply, MissedReply, SecondLookReply, SizeReply
+from ..artifacts.replies import BoxReply, CorrectionReply, MissedReply, SecondLookReply
 from .clean import MAX_METRES, MAX_OBJECTS, SIDE_NAMES, clean_box, clean_object, facing_yaw, fix_parents
 
 SAME_BOX = 0.6
@@ -46,7 +47,7 @@ def merge_second_look(analysis: SceneAnalysis, reply: SecondLookReply, crops: li
         crops: for each picture of the request, what part of the whole it shows; None for the whole.
     """
     findings = list(analysis.findings)
-    objects = with_corrections(analysis.objects, reply.corrections, findings)
+    objects = with_corrections(analysis.objects, reply.corrections, findings, crops)
     taken = {o.id for o in objects} | {a.id for a in analysis.architecture}
     named: dict[str, str] = {}
     for missed in reply.missed:
@@ -130,9 +131,16 @@ def _shared(a: ImageBox, b: ImageBox) -> float:
 
 
 def with_corrections(
-    found: Sequence[DetectedObject], corrections: Sequence[CorrectionReply], findings: list[Finding]
+    found: Sequence[DetectedObject],
+    corrections: Sequence[CorrectionReply],
+    findings: list[Finding],
+    crops: Sequence[ImageBox | None] = (None,),
 ) -> list[DetectedObject]:
-    """The objects with better boxes and names, and without those that are taken back; all of it is reported."""
+    """The objects with better boxes and names, and without those that are taken back; all of it is reported.
+
+    Args:
+        crops: for each picture of the request, what part of the whole it shows; None for the whole.
+    """
     objects = list(found)
     index = {o.id: i for i, o in enumerate(objects)}
     dropped: set[str] = set()
@@ -145,24 +153,35 @@ def with_corrections(
             findings.append(Finding(about=fix.id, message=f"Taken back by the second look: {fix.wrong[:120]}"))
             continue
         i = index[fix.id]
-        objects[i] = _apply(objects[i], fix, findings)
+        objects[i] = _apply(objects[i], fix, findings, crops)
     return [o for o in objects if o.id not in dropped]
 
 
-def _apply(item: DetectedObject, fix: CorrectionReply, findings: list[Finding]) -> DetectedObject:
+def _apply(
+    item: DetectedObject, fix: CorrectionReply, findings: list[Finding], crops: Sequence[ImageBox | None]
+) -> DetectedObject:
     update: dict[str, object] = {}
-    box = clean_box(fix.box)
+    box = None
+    if fix.box is not None and not 1 <= fix.picture <= len(crops):
+        message = f"Its better box names picture {fix.picture}, which was not sent; the box is not used."
+        findings.append(Finding(about=fix.id, message=message))
+    elif fix.box is not None:
+        box = clean_box(to_whole_picture(fix.box, crops[fix.picture - 1]))
     if box is not None:
         update["box"] = box
-    update |= _metres(item, fix.centre_m, fix.size_m)
+    update |= _metres(item, fix)
     if fix.centre_m is not None and "centre" in update:
         update["source"] = SEEN_AGAIN
     elif box is not None:
         update["source"] = BOX_CORRECTED
     if fix.category:
         update["category"] = fix.category.strip()[:60]
-    if fix.facing is not None and fix.facing != "none":
+    if fix.yaw_deg is not None and math.isfinite(fix.yaw_deg):
+        update["yaw"] = fix.yaw_deg % 360.0
+    elif fix.facing is not None and fix.facing != "none":
         update["yaw"] = facing_yaw(fix.facing, item.yaw)
+    if fix.placement is not None:
+        update["placement"] = fix.placement
     if fix.parent is not None:
         update["parent"] = fix.parent or None
     if update:
@@ -172,10 +191,14 @@ def _apply(item: DetectedObject, fix: CorrectionReply, findings: list[Finding]) 
     return item.model_copy(update=update)
 
 
-def _metres(item: DetectedObject, centre: MetresReply | None, size: SizeReply | None) -> dict[str, object]:
-    """What a correction says of place and size, as far as it is possible; the underside stays where it is."""
+def _metres(item: DetectedObject, fix: CorrectionReply) -> dict[str, object]:
+    """What a correction says of place and size, as far as it is possible; else the underside stays where it is."""
     update: dict[str, object] = {}
+    centre, size = fix.centre_m, fix.size_m
     base, sizes = item.centre[2] - item.size[2] / 2, item.size
+    raised = fix.base_m is not None and 0.0 <= fix.base_m <= MAX_METRES
+    if raised and fix.base_m is not None:
+        base = fix.base_m
     if size is not None:
         said = (abs(size.width), abs(size.depth), abs(size.height))
         if min(said) >= LEAST_SIZE and max(said) <= MAX_METRES:
@@ -184,6 +207,6 @@ def _metres(item: DetectedObject, centre: MetresReply | None, size: SizeReply | 
     x, y = item.centre[:2]
     if centre is not None and max(abs(centre.x_m), abs(centre.y_m)) <= MAX_METRES:
         x, y = centre.x_m, centre.y_m
-    if update or centre is not None:
+    if update or centre is not None or raised:
         update["centre"] = (x, y, base + sizes[2] / 2)
     return update

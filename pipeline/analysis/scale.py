@@ -24,8 +24,8 @@ HUBER = 1.5
 CONTRADICTS = 2.5
 """In its own standard deviations: an anchor that is off by more from all others is named."""
 LARGEST = math.log(3.0)
-SMALLEST = math.log(1.01)
-"""A smaller correction is not made: the stated metres stay number for number."""
+SMALLEST = math.log(1.03)
+"""A smaller correction is not made: what is usual says nothing about so little, and the stated metres stay number for number."""
 
 
 @dataclass(frozen=True)

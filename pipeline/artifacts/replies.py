@@ -111,16 +111,23 @@ class AnalysisReply(Reply):
 
 
 class CorrectionReply(Reply):
-    """A better box, place, size or name for an object that was found; null fields stay as they are."""
+    """A better box, place, size or name for an object that was found; null fields stay as they are.
+
+    `picture` is the number of the picture whose 0-1000 the box uses (1 is the whole).
+    """
 
     id: str
     wrong: str = ""
     remove: bool = False
     category: str | None = None
+    picture: int = 1
     box: BoxReply | None = None
     centre_m: MetresReply | None = None
+    base_m: float | None = None
     size_m: SizeReply | None = None
     facing: Facing | None = None
+    yaw_deg: float | None = None
+    placement: Literal["floor", "wall", "ceiling", "surface"] | None = None
     parent: str | None = None
 
 

@@ -42,7 +42,7 @@ class Trust(Artifact):
     box_sigma: Part = 5.0
     centre_sigma: Part = 0.005
     size_sigma: Part = 0.045
-    height_sigma: Part = 0.2
+    height_sigma: Part = 0.08
     metres_stretch: Pair = (0.0, 0.0)
     metres_shift: Pair = (0.0, 0.0)
     metres_size: Pair = (0.0, 0.0)

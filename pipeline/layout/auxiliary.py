@@ -21,6 +21,10 @@ from .walls import NAMES, along, point_on
 
 WALL_REACH = 0.9
 FREE_PICTURE_Z = 1.5
+LOWER = 0.05
+"""Metres by which a thing stands below its parent's highest edge before it is believed to (on a seat, on a shelf)."""
+LAPPED = 0.5
+"""A thing that is wider than what carries it reaches over this part of it at least."""
 RUG = 0.06
 """Height in metres below which a thing on the floor is so flat that others stand on it."""
 
@@ -42,9 +46,16 @@ def on_ceiling(item: DetectedObject, calibration: Calibration) -> tuple[ProxyLin
 
 
 def on_surface(
-    item: DetectedObject, parents: Mapping[str, ProxyLine], calibration: Calibration
+    item: DetectedObject,
+    parents: Mapping[str, ProxyLine],
+    calibration: Calibration,
+    tops: Mapping[str, float] | None = None,
 ) -> tuple[ProxyLine, list[Finding]] | None:
-    """A thing on another: at its parent's top, its middle above the parent. None without a placed parent."""
+    """A thing on another: at its parent's top, its middle above the parent. None without a placed parent.
+
+    Args:
+        tops: how high the parents were said to end, by id, metres; the layout may have them a little higher or lower.
+    """
     parent = parents.get(item.parent or "")
     if parent is None:
         return None
@@ -54,7 +65,8 @@ def on_surface(
     floor_of_parent = parent.centre[2] - parent.size[2] / 2
     # A throw over a duvet hangs down beside it, so it may begin as low.
     lowest = floor_of_parent + (0.05 if parent.placement == "floor" else -0.05)
-    if lowest < stated < base - 0.05:
+    said_top = (tops or {}).get(parent.id, base)
+    if lowest < stated < base - LOWER and stated < said_top - LOWER:
         base = stated
     proxy, findings = proxy_of(item, calibration, base)
     moved = _over(proxy, parent)
@@ -73,7 +85,13 @@ def _over(proxy: ProxyLine, parent: ProxyLine) -> ProxyLine:
         abs(proxy.size[0] * math.cos(turned)) / 2 + abs(proxy.size[1] * math.sin(turned)) / 2,
         abs(proxy.size[0] * math.sin(turned)) / 2 + abs(proxy.size[1] * math.cos(turned)) / 2,
     )
-    limits = [max(0.0, parent.size[i] / 2 - 0.6 * min(reach[i], parent.size[i] / 2)) for i in (0, 1)]
+    limits = [
+        parent.size[i] / 2 - 0.6 * reach[i]
+        if reach[i] < parent.size[i] / 2
+        # Wider than what carries it: a screen over two desks stays where it is seen.
+        else max(0.2 * parent.size[i], reach[i] - LAPPED * parent.size[i])
+        for i in (0, 1)
+    ]
     kept = [max(-limits[i], min(limits[i], local[i])) for i in (0, 1)]
     if abs(kept[0] - local[0]) + abs(kept[1] - local[1]) < 1e-6:
         return proxy

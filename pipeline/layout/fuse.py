@@ -39,7 +39,7 @@ LEAST_EDGE = 6.0
 """Differences of edges that are never a contradiction, in thousandths of the picture's longer side."""
 BETTER_BOXES = 0.5
 """Boxes are believed against contradicting metres when their errors are usually by so much smaller."""
-SQUARE_YAW = 8.0
+SQUARE_YAW = 3.0
 """Turned by less than this many degrees from the walls' directions counts as not turned."""
 
 METRES, BOX = "metres were", "box was"

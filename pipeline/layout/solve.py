@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 from ..artifacts.analysis import Finding
 from ..artifacts.common import Metres2
-from ..artifacts.layout import Layout, ProxyLine
+from ..artifacts.layout import Layout, ProxyLine, WallLine
 from ..geometry.apart import Body, least_moves
 from ..geometry.placement import Rect, gap_between, is_inside, penetration, push_inside, separate, snap_to_wall
 from ..geometry.polygon import overlap_fraction
@@ -28,6 +28,8 @@ SNAP = 0.035
 LEAST_SNAP, MOST_SNAP = 0.01, 0.08
 LEAN_SNAP = 0.2
 """The same for a thing of which it is said that it stands against that wall."""
+LEAN_SPREADS = 3.0
+"""What stands against a wall may stand a hand's breadth off it; beyond so many of its place's errors it does."""
 TURN = 6.0
 """Most degrees by which something is turned to stand flush."""
 MAX_MOVE = 0.8
@@ -37,6 +39,10 @@ DOOR_MOVE = 0.06
 """What stands deeper than this where a door swings was seen there, metres: it stays and is reported."""
 FOLLOW = 0.08
 """What is moved further than this, metres, takes along what keeps its place beside it."""
+CORNER = 0.04
+"""Part of its sides by which a thing that stands askew may reach into a wall: no armchair fills its box's corners."""
+SHRINK = 0.06
+"""Part by which such a thing is made smaller before it is moved away from a wall: its middle is known better."""
 REPORT = 0.03
 FURNITURE_OVERLAP = 0.02
 PASSES = 3
@@ -168,7 +174,10 @@ def _as_body(room: _Room, k: int, held: bool) -> Body:
     if k in room.fixed:
         return Body(rect, parts_of(rect, proxy.shape, _others(room, k)), math.inf)
     parts = parts_of(rect, proxy.shape, _others(room, k))
-    return Body(rect, parts, room.weights[k], room.held.get(k, ()) if held else ())
+    bound = _bound(rect, room.layout.walls)
+    if bound != rect and not parts:
+        parts = (rect,)
+    return Body(bound, parts, room.weights[k], room.held.get(k, ()) if held else ())
 
 
 def _others(room: _Room, k: int) -> list[Rect]:
@@ -302,15 +311,38 @@ def _settled(rect: Rect, proxy: ProxyLine, layout: Layout, ties: Ties) -> tuple[
             if math.dist(snapped[:2], rect[:2]) > 1e-6 or snapped.yaw != rect.yaw:
                 rect = snapped
             held.append(inward)
-    if is_inside(rect, layout.room.floor):
+    if not held:
+        rect = _smaller(rect, layout)
+    bound = _bound(rect, layout.walls)
+    if is_inside(bound, layout.room.floor):
         return rect, tuple(held)
-    return push_inside(rect, layout.room.floor).rect, tuple(held)
+    return rect.moved(*push_inside(bound, layout.room.floor).shift), tuple(held)
+
+
+def _bound(rect: Rect, walls: Sequence[WallLine]) -> Rect:
+    """What of a footprint must be inside the room: of a thing that stands askew to all walls, all but its corners."""
+    if any(is_parallel(rect, (wall.start, wall.end)) for wall in walls):
+        return rect
+    return rect._replace(width=rect.width * (1 - CORNER), depth=rect.depth * (1 - CORNER))
+
+
+def _smaller(rect: Rect, layout: Layout) -> Rect:
+    """A thing that stands askew made a little smaller where its corners reach too far into a wall."""
+    if is_inside(_bound(rect, layout.walls), layout.room.floor) or _bound(rect, layout.walls) == rect:
+        return rect
+    for part in (SHRINK / 3, SHRINK * 2 / 3, SHRINK):
+        less = rect._replace(width=rect.width * (1 - part), depth=rect.depth * (1 - part))
+        if is_inside(_bound(less, layout.walls), layout.room.floor):
+            break
+    return less
 
 
 def _snap_distance(identifier: str, wall: str, ties: Ties) -> float:
     spread = ties.spread.get(identifier)
     usual = SNAP if spread is None else max(LEAST_SNAP, min(MOST_SNAP, spread))
-    return max(usual, LEAN_SNAP) if (identifier, wall) in ties.leaning else usual
+    if (identifier, wall) not in ties.leaning:
+        return usual
+    return max(usual, LEAN_SNAP if spread is None else min(LEAN_SNAP, LEAN_SPREADS * spread))
 
 
 def _rect(proxy: ProxyLine) -> Rect:

@@ -191,7 +191,7 @@ def _second_request(
             "height": str(picture.height),
             "crops": ", ".join(f"picture {n} {name}" for n, name in enumerate(names, 2)),
             "found": _list(stated.objects) + view.noted(o.id for o in stated.objects),
-            "doubts": questions(doubts(stated, fitted.analysis, fitted.calibration)) or "none",
+            "doubts": _doubtful(questions(doubts(stated, fitted.analysis, fitted.calibration))),
             "room_width": f"{stated.room_size[0]:.2f}",
             "room_depth": f"{stated.room_size[1]:.2f}",
         },
@@ -226,6 +226,18 @@ def _again_request(
         },
         images=tuple(images),
     )
+
+
+def _doubtful(said: str) -> str:
+    """The paragraph on what contradicts itself, empty where nothing does."""
+    if not said:
+        return ""
+    return f"""
+Doubtful, since box and metres contradict each other (a leaning or half hidden thing may explain it):
+{said}
+Look at each of these first. Answer it in `corrections` with the tight `box`, and with `centre_m` and `size_m` measured
+anew.
+"""
 
 
 def _list(objects: Sequence[DetectedObject]) -> str:

@@ -43,10 +43,29 @@ def _request(view: View, analysis: SceneAnalysis, walls: list[WallLine]) -> Requ
         reply=GraphReply,
         values={
             "objects": objects + view.noted(o.id for o in analysis.objects),
-            "walls": ", ".join(w.id for w in walls),
+            "walls": "; ".join(f"{w.id} ({_where(w, walls)})" for w in walls),
         },
-        images=(Picture("boxes", picture),),
+        images=(Picture("reference", view.reference.for_model()), Picture("boxes", picture)),
     )
+
+
+def _where(wall: WallLine, walls: list[WallLine]) -> str:
+    """Where a wall is in the picture, in words; with its ends where that would not tell which."""
+    (ax, ay), (bx, by) = wall.start, wall.end
+    x, y = (ax + bx) / 2, (ay + by) / 2
+    across = abs(bx - ax) >= abs(by - ay)
+    side = (
+        "inside the room"
+        if wall.partition
+        else ("top" if y > 0 else "bottom")
+        if across
+        else "right"
+        if x > 0
+        else "left"
+    )
+    if len(walls) <= 4:
+        return side
+    return f"{side}, from {ax:.1f} {ay:.1f} to {bx:.1f} {by:.1f} m"
 
 
 def make_graph(
