@@ -10,7 +10,7 @@ OUT ?= out/demo
 BLENDER ?= blender
 JOBS ?= 2
 
-.PHONY: demo test lint setup extension test-desktop screenshots benchmark clean
+.PHONY: demo test lint setup extension test-desktop screenshots benchmark layout-table ablations clean
 
 demo: setup
 	$(RUN)/code-as-room samples/bedroom/picture.png --replies samples/bedroom/replies --out $(OUT)
@@ -31,6 +31,14 @@ benchmark: setup
 	$(RUN)/python -m benchmark.stages
 	$(RUN)/code-as-room samples/bedroom/picture.png --replies samples/bedroom/replies --out out/benchmark
 	$(RUN)/python -m benchmark.layout out/benchmark/scene.json samples/bedroom/truth.json out/benchmark/memory.json
+
+# Stages 1 to 4 replayed from the recordings of our own pictures, scored beside the direct answer.
+layout-table: setup
+	$(RUN)/python -m benchmark.replay --out out/replay
+
+# The same with one thing left out at a time, and with noisier models; takes long.
+ablations: setup
+	$(RUN)/python -m benchmark.ablations benchmark/recordings --out out/ablations --seeds 2 --jobs $(JOBS)
 
 # One zip a platform, with the wheels that Blender lacks, built and validated by Blender's own packager.
 extension: setup
