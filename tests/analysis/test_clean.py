@@ -168,3 +168,20 @@ def test_second_look_parents_are_found_by_the_names_of_the_answer() -> None:
     merged = merge_second_look(first, answer, [None])
     parents = {o.id: o.parent for o in merged.objects}
     assert parents == {"chair_1": None, "cup_1": "tea_tray", "tea_tray": None, "pillow": "chair_1"}
+
+
+def test_a_correction_may_be_read_off_an_enlarged_part_and_change_yaw_underside_and_placement() -> None:
+    first = clean_analysis(reply(thing("a"), thing("b")), (1000, 1000))
+    crop = ImageBox(x_min=500, y_min=0, x_max=1000, y_max=500)
+    box = {"x_min": 100, "y_min": 200, "x_max": 300, "y_max": 400}
+    fixes = [
+        {"id": "a", "picture": 2, "box": box, "yaw_deg": 20, "facing": "right", "base_m": 0.7, "placement": "surface"},
+        {"id": "b", "picture": 9, "box": box, "parent": "a"},
+    ]
+    merged = merge_second_look(first, SecondLookReply.model_validate({"corrections": fixes}), [None, crop])
+    a, b = merged.objects
+    assert a.box == ImageBox(x_min=550, y_min=100, x_max=650, y_max=200)
+    assert (a.yaw, a.placement) == (20, "surface")
+    assert a.centre[2] - a.size[2] / 2 == pytest.approx(0.7) and a.size == first.objects[0].size
+    assert b.box == first.objects[1].box and b.parent == "a"
+    assert any(f.about == "b" and "picture 9" in f.message for f in merged.findings)

@@ -122,3 +122,16 @@ def test_an_edge_below_a_table_or_a_partition_is_a_guess(analysis: SceneAnalysis
     assert found["rug"][2] > 2.5 and found["rug"][0] == found["rug"][1] == 1.0
     assert found["box"][2] > 2.0 and found["box"][0] == 1.0
     assert "table" not in found and "cup" not in found
+
+
+def test_furniture_is_not_taken_for_too_large_in_one_direction_of_the_picture_alone() -> None:
+    room = make_room(3, Errors(centre=0.02, size=0.02, box=4.0))
+    squeezed = []
+    for item in room.analysis.objects:
+        assert item.box is not None
+        y_min, y_max = item.box.y_min, item.box.y_max
+        inset = 0.07 * (y_max - y_min)
+        box = item.box.model_copy(update={"y_min": y_min + inset, "y_max": y_max - inset})
+        squeezed.append(item.model_copy(update={"box": box}))
+    trust = learn_trust(room.analysis.model_copy(update={"objects": squeezed}), room.calibration)
+    assert abs(trust.metres_size[0] - trust.metres_size[1]) < 0.06

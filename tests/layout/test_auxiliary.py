@@ -40,3 +40,31 @@ def test_what_stands_on_a_cupboard_as_high_as_the_room_stays_below_the_ceiling(c
     placed = on_surface(box, {"cupboard": cupboard}, calibration)
     assert placed is not None
     assert top_of(placed[0]) <= calibration.height + 1e-9 and placed[0].size[2] == pytest.approx(0.4)
+
+
+def thing(identifier: str, base: float, size: tuple[float, float, float], at: tuple[float, float]) -> DetectedObject:
+    return DetectedObject(
+        id=identifier, category=identifier, placement="surface", parent="desk", box=None,
+        centre=(*at, base + size[2] / 2), size=size,
+    )  # fmt: skip
+
+
+def test_what_stands_on_a_desk_follows_its_top_and_what_is_said_to_be_lower_does_not(calibration: Calibration) -> None:
+    desk = ProxyLine(id="desk", category="desk", centre=(0.0, 0.0, 0.42), size=(1.4, 0.7, 0.84))
+    lamp, drawer = thing("lamp", 0.74, (0.2, 0.2, 0.4), (0, 0)), thing("book", 0.3, (0.2, 0.2, 0.05), (0, 0))
+    bases = []
+    for item in (lamp, drawer):
+        placed = on_surface(item, {"desk": desk}, calibration, {"desk": 0.74})
+        assert placed is not None
+        bases.append(placed[0].centre[2] - placed[0].size[2] / 2)
+    assert bases == pytest.approx([0.84, 0.3])
+
+
+def test_a_screen_over_two_desks_stays_where_it_is_seen(calibration: Calibration) -> None:
+    desk = ProxyLine(id="desk", category="desk", centre=(0.0, 0.0, 0.37), size=(1.4, 0.7, 0.74))
+    screen = thing("screen", 0.74, (2.8, 0.04, 0.4), (0.7, 0.33))
+    placed = on_surface(screen, {"desk": desk}, calibration)
+    assert placed is not None
+    assert placed[0].centre[:2] == pytest.approx((0.7, 0.33))
+    away = on_surface(thing("cup", 0.74, (0.1, 0.1, 0.1), (1.5, 0.0)), {"desk": desk}, calibration)
+    assert away is not None and away[0].centre[0] < 0.7

@@ -8,7 +8,7 @@ import numpy as np
 from code_as_room.pipeline.artifacts.layout import Layout, ProxyLine, RoomLine
 from code_as_room.pipeline.geometry.polygon import outside_fraction, overlap_fraction
 from code_as_room.pipeline.layout.score import corners
-from code_as_room.pipeline.layout.solve import settle_minor, solve
+from code_as_room.pipeline.layout.solve import Ties, settle_minor, solve
 from code_as_room.pipeline.layout.walls import outer_walls
 
 L_SHAPE = [(-3.0, -2.0), (3.0, -2.0), (3.0, 0.5), (0.5, 0.5), (0.5, 2.0), (-3.0, 2.0)]
@@ -67,3 +67,23 @@ def test_a_plant_in_a_cupboard_steps_out_and_the_cupboard_stays() -> None:
     plant = settle_minor(proxy("plant", -1.8, -1.6, 0.4, 0.4), layout(cupboard), frozenset())
     assert overlap_fraction(corners(plant), corners(cupboard)) < 0.02
     assert outside_fraction(corners(plant), L_SHAPE) < 0.001
+
+
+def test_what_is_said_to_stand_against_a_wall_is_drawn_there_only_as_far_as_its_place_is_unsure() -> None:
+    shelf = proxy("shelf", 0.0, -1.62)  # 8 cm off the wall
+    leaning = frozenset({("shelf", "wall_s")})
+    sure = Ties(spread={"shelf": 0.01}, leaning=leaning)
+    unsure = Ties(spread={"shelf": 0.05}, leaning=leaning)
+    assert solve(layout(shelf), NONE, frozenset(), {}, sure)[0].proxies[0] == shelf
+    assert abs(solve(layout(shelf), NONE, frozenset(), {}, unsure)[0].proxies[0].centre[1] + 1.7) < 1e-6
+
+
+def test_the_corner_of_an_armchair_that_stands_askew_may_reach_into_the_wall_a_little() -> None:
+    reach = 0.45 * (np.cos(np.radians(30)) + np.sin(np.radians(30)))
+    chair = proxy("chair", -2.0, -2.0 + reach - 0.02, 0.9, 0.9, yaw=30)
+    assert solve(layout(chair), NONE, frozenset(), {})[0].proxies[0] == chair
+    far = proxy("far", -2.0, -2.0 + reach - 0.12, 0.9, 0.9, yaw=30)
+    [settled] = solve(layout(far), NONE, frozenset(), {})[0].proxies
+    assert 0.9 * 0.93 < settled.size[0] < 0.9  # made a little smaller first, since its middle is known better
+    assert 0.0 < settled.centre[1] - far.centre[1] < 0.1
+    assert outside_fraction(corners(settled), L_SHAPE) < 0.02
