@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Stage 10, light and views: lights as in the picture, an exposure to match, and cameras to look at the room with.
+
+The model is asked once what kind of light the picture has, and everything works without its answer. Watts, exposure and
+cameras are worked out here: rays are followed through the room's boxes, since a render would take longer and would have to
+be waited for. (Paper, stage 10.)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ..artifacts.analysis import Calibration, Finding, SceneAnalysis
+from ..artifacts.layout import CameraLine, Layout, LayoutEdit, LayoutProgram, ProxyLine, ViewLine, WindowLine
+from ..artifacts.light import Brightness, LightPlan, LightReply
+from ..artifacts.objects import RoomStyle
+from ..layout.hand import apply_hand_edits
+from ..light.albedo import room_albedo
+from ..light.decide import Decision, decide
+from ..light.exposure import matched
+from ..light.lamps import is_lamp
+from ..light.lights import Lit, make_lights
+from ..light.measure import Places, shines, surround, visible_places
+from ..light.space import Space, space_of
+from ..light.tint import background_light, light_tint
+from ..light.tone import AGX, MEDIUM_HIGH
+from ..light.views import EYES, TOP, cut_height, eye_cameras, top_camera
+from ..objects.asking import picture_box
+from ..objects.text import relaid
+from ..program.edits import LISTS
+from ..program.evaluate import evaluate
+from ..program.limits import FINISHED_ROOM_LIMITS
+from ..program.lines import parse_layout
+from ..program.prelude.proxies import proxy_shapes
+from ..program.prelude.record import Record
+from .base import Reads, Stage, View
+from .wishes import Ask, Build, Picture, Request, StageRun, Tell
+
+ID = "s10_finish"
+REFERENCE = "reference"
+_OWN = ("light", "world", "view", "camera")
+_BEFORE = ("s07_surfaces", "s08_materials", "s09_textures")
+
+
+def run(view: View) -> StageRun:
+    """Write the `LayoutProgram` with lights, sky, exposure and cameras, and `LightPlan`, which says why they are so."""
+    before, calibration = view.need(LayoutProgram), view.need(Calibration)
+    layout, findings = apply_hand_edits(parse_layout(before.text), view.hand_edits, before.hand_edits)
+    yield Tell("Looking at the light", 1, 3)
+    record = evaluate(relaid(before.text, layout), FINISHED_ROOM_LIMITS)
+    space = space_of(layout, room_albedo(record))
+    places = _places(view, space, calibration)
+    lamps = [p for p in layout.proxies if is_lamp(p)]
+    request = _request(view, layout, lamps)
+    reply: LightReply | None = None
+    if request is not None:
+        (reply,) = yield Ask((request,), optional=True)
+    decision = decide(space, places, layout.windows, lamps, _shining(view, calibration, lamps, places), reply)
+    yield Tell("Placing lights and cameras", 2, 3)
+    finished, plan = _finished(view, space, places, decision, record, calibration)
+    held, more = _as_the_artist_left_it(finished, view.hand_edits)
+    text = relaid(before.text, held)
+    yield Tell("Building the room", 3, 3)
+    yield Build(text)
+    plan = plan.model_copy(update={"findings": [*plan.findings, *more]})
+    new = [f for f in findings if f not in before.findings]
+    program = before.model_copy(
+        update={
+            "text": text,
+            "stage": ID,
+            "findings": [*before.findings, *new],
+            "hand_edits": len(view.hand_edits),
+        }
+    )
+    return [program, plan]
+
+
+def _places(view: View, space: Space, calibration: Calibration) -> Places | None:
+    """Floor and walls in the picture; None for a drawn plan, whose brightness says nothing."""
+    if view.need(SceneAnalysis).view == "plan":
+        return None
+    places = visible_places(space, calibration.camera, view.reference)
+    return places if len(places.points) else None
+
+
+def _shining(view: View, calibration: Calibration, lamps: Sequence[ProxyLine], places: Places | None) -> list[str]:
+    """Ids of the lamps that the picture shows as bright spots."""
+    if places is None:
+        return []
+    boxes = {lamp.id: picture_box(lamp, calibration.camera, view.need(SceneAnalysis)) for lamp in lamps}
+    return [name for name, box in boxes.items() if box is not None and shines(view.reference, box)]
+
+
+def _request(view: View, layout: Layout, lamps: Sequence[ProxyLine]) -> Request | None:
+    """The question on the light; None for a plan drawing, whose light is nobody's."""
+    if view.need(SceneAnalysis).view == "plan":
+        return None
+    windows = "\n".join(f"- {w.id}: {_side(w)}, {_width(w):.1f} m wide" for w in layout.windows)
+    lit = "\n".join(f"- {p.id}: {p.label or p.category}" for p in lamps)
+    return Request(
+        key="10_light",
+        prompt="10_light",
+        values={"windows": windows or "- none", "lamps": lit or "- none", "room": ""},
+        images=(Picture("reference", view.reference.for_model()),),
+        reply=LightReply,
+    )
+
+
+def _side(window: WindowLine) -> str:
+    """Where a window lies, as the picture shows it."""
+    x, y = ((a + b) / 2 for a, b in zip(window.start, window.end, strict=True))
+    if abs(window.end[1] - window.start[1]) > abs(window.end[0] - window.start[0]):
+        return "in a wall on the right" if x > 0 else "in a wall on the left"
+    return "in a wall at the top" if y > 0 else "in a wall at the bottom"
+
+
+def _width(window: WindowLine) -> float:
+    return float(((window.end[0] - window.start[0]) ** 2 + (window.end[1] - window.start[1]) ** 2) ** 0.5)
+
+
+def _finished(
+    view: View, space: Space, places: Places | None, decision: Decision, record: Record, calibration: Calibration
+) -> tuple[Layout, LightPlan]:
+    """The layout with everything that this stage adds, and the reasons."""
+    layout = space.layout
+    style = view.recall(RoomStyle)
+    shapes = {p.id: record.furnished.get(p.id) or proxy_shapes(p.model_dump()) for p in decision.lamps}
+    tint = light_tint(style.gains if style is not None and places is not None else None)
+    lit = make_lights(
+        space, decision.style, shapes, decision.lamps, decision.windows, decision.sun, tint, decision.warmth
+    )
+    lights = [*layout.lights, *lit.lights]
+    exposure, brightness = matched(space, lights, lit.world.strength, places, AGX, MEDIUM_HIGH)
+    seen = surround(view.reference) if places is not None else None
+    sky = lit.world.model_copy(
+        update={"background": background_light(seen, decision.style, exposure, AGX, MEDIUM_HIGH)}
+    )
+    cut = cut_height(space)
+    shown = ViewLine(id="view", exposure=exposure, transform=AGX, look=MEDIUM_HIGH, ceiling=space.height, cut=cut)
+    taken = {line.id for name in ("proxies", *LISTS) for line in getattr(layout, name)} - {TOP, *EYES}
+    names = tuple(name if name not in taken else f"{name}_view" for name in EYES)
+    eyes, coverage = eye_cameras(space, names)
+    cameras = [top_camera(space, cut, TOP if TOP not in taken else f"{TOP}_view"), *eyes]
+    own = {c.id for c in cameras}
+    kept: list[CameraLine] = [c for c in layout.cameras if c.id not in own]
+    finished = layout.model_copy(
+        update={"lights": lights, "worlds": [sky], "views": [shown], "cameras": [*kept, *cameras]}
+    )
+    return finished, _plan(decision, lit, exposure, brightness, [c.id for c in finished.cameras], coverage)
+
+
+def _plan(
+    decision: Decision,
+    lit: Lit,
+    exposure: float,
+    brightness: list[Brightness],
+    cameras: list[str],
+    seen: dict[str, float],
+) -> LightPlan:
+    """Why the lights are as they are."""
+    return LightPlan(
+        style=decision.style,
+        direction=lit.sun.azimuth if lit.sun is not None else None,
+        elevation=lit.sun.elevation if lit.sun is not None else None,
+        windows=lit.windows,
+        lamps=lit.lamps,
+        warmth=lit.world.kelvin,
+        exposure=exposure,
+        source="model" if decision.asked else "measured",
+        brightness=brightness,
+        cameras=cameras,
+        seen={name: round(share, 3) for name, share in seen.items()},
+        findings=decision.findings,
+    )
+
+
+def _as_the_artist_left_it(layout: Layout, edits: Sequence[LayoutEdit]) -> tuple[Layout, list[Finding]]:
+    """The layout with what the artist did to lights, sky, view and cameras by hand, whenever that was."""
+    names = {line.id for group in ("lights", "worlds", "views", "cameras") for line in getattr(layout, group)}
+    names -= {REFERENCE}
+
+    def is_own(edit: LayoutEdit) -> bool:
+        if edit.op == "line" and edit.line is not None:
+            return edit.line.lstrip().startswith(_OWN)
+        return edit.op == "remove"
+
+    own = [edit for edit in edits if edit.id in names and edit.origin == "artist" and is_own(edit)]
+    return apply_hand_edits(layout, own)
+
+
+STAGE = Stage(
+    id=ID,
+    title="Light and views",
+    reads=(Reads(SceneAnalysis), Reads(Calibration), Reads(LayoutProgram, _BEFORE)),
+    writes=(LayoutProgram, LightPlan),
+    run=run,
+    recalls=(Reads(RoomStyle),),
+)
