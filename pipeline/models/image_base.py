@@ -1,0 +1,262 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What all clients of image services share: words in, one checked image out. Requests, limits and redaction as elsewhere."""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import io
+import json
+import threading
+import time
+import warnings
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any, Literal, Protocol
+from urllib.parse import urlsplit
+
+from PIL import Image
+
+from ..errors import ModelError
+from .addresses import is_local_url, normal_base_url
+from .exchange import Answer, Call, exchange
+from .faults import Fault, FaultKind, ServiceError, plain, quoted, status_fault
+from .http_client import checked_key
+from .limits import Limits, Route
+from .retry import RetryPolicy, with_retries
+
+Proportions = Literal["square", "wide", "tall"]
+LARGEST_REPLY = 40_000_000
+MOST_PIXELS = 20_000_000
+LEAST_SIDE = 64
+_FORMATS = ("PNG", "JPEG", "WEBP")
+IMAGE_LIMITS = Limits(read=300.0, total=420.0, size=LARGEST_REPLY)
+IMAGE_RETRIES = RetryPolicy(tries=2)
+"""Fewer than for questions: an image is dear, and a service that breaks off may have made it."""
+
+
+@dataclass(frozen=True)
+class ImageRequest:
+    """What is to be painted: words, and the proportions of the image."""
+
+    text: str
+    proportions: Proportions = "square"
+
+
+@dataclass(frozen=True)
+class PaintedImage:
+    """An image as the service made it, checked to be one: PNG, JPEG or WebP bytes.
+
+    `cost` is in US dollars, None when unknown.
+    """
+
+    data: bytes
+    model: str
+    cost: float | None = None
+    seconds: float = 0.0
+    tokens: int = 0
+
+
+class ImageClient(Protocol):
+    """Something that paints. `paint` is called from worker threads, several at once.
+
+    Attributes:
+        name: for memory and report, such as "openai-images:gpt-image-x"; describes: one sentence for the artist.
+    """
+
+    name: str
+    describes: str
+
+    def paint(
+        self, request: ImageRequest, cancel: threading.Event, progress: Callable[[str], None] | None = None
+    ) -> PaintedImage:
+        """Paint one image.
+
+        Raises:
+            ServiceError: the service failed, or refused (kind "refusal"), in its own words where it gave any.
+            Cancelled: `cancel` was set.
+        """
+        ...
+
+
+class ImageHttpClient:
+    """A client for one image service and model. Safe to use from several threads. Subclasses know one envelope.
+
+    Args:
+        base_url: such as "https://api.openai.com/v1"; api_key: "" for services that need none.
+        route: proxy and certificates.
+
+    Raises:
+        ModelError: the address, the model's name or the key cannot be right.
+    """
+
+    vendor = ""
+    endpoints: tuple[str, ...] = ()
+    default_path = "/v1"
+    key_header = "Authorization"
+
+    def __init__(
+        self,
+        base_url: str,
+        model: str,
+        api_key: str = "",
+        limits: Limits | None = None,
+        retries: RetryPolicy | None = None,
+        route: Route | None = None,
+    ) -> None:
+        self.base_url = normal_base_url(base_url, self.default_path, self.endpoints)
+        self.model = model.strip()
+        if not self.model:
+            raise ModelError("No image model is named.", "Give the model's name as the service spells it.")
+        self._key = checked_key(api_key)
+        self._limits, self._retries = limits or IMAGE_LIMITS, retries or IMAGE_RETRIES
+        self._route = route or Route()
+        self.host = urlsplit(self.base_url).hostname or ""
+        self.name = f"{self.vendor}:{self.model}"
+        where = "on this computer" if is_local_url(self.base_url) else f"at {self.host}"
+        self.describes = f"The image model {self.model} {where}"
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self.base_url!r}, {self.model!r})"
+
+    def url(self) -> str:
+        """Where a request is sent."""
+        raise NotImplementedError
+
+    def body(self, request: ImageRequest) -> dict[str, Any]:
+        """The request's body."""
+        raise NotImplementedError
+
+    def read(self, data: Mapping[str, Any], get: Callable[[str], bytes]) -> PaintedImage:
+        """The image in a reply; `get` fetches what is only linked to. Raises Fault where there is none."""
+        raise NotImplementedError
+
+    def paint(
+        self, request: ImageRequest, cancel: threading.Event, progress: Callable[[str], None] | None = None
+    ) -> PaintedImage:
+        """See `ImageClient.paint`."""
+        started = time.monotonic()
+        deadline = started + self._limits.total
+        made = with_retries(
+            lambda: self._once(request, deadline, cancel, progress), self._retries, deadline, cancel, progress
+        )
+        return replace(made, seconds=time.monotonic() - started)
+
+    def _once(
+        self,
+        request: ImageRequest,
+        deadline: float,
+        cancel: threading.Event,
+        progress: Callable[[str], None] | None,
+    ) -> PaintedImage:
+        call = Call(
+            url=self.url(),
+            body=json.dumps(self.body(request)).encode(),
+            key=self._key,
+            key_header=self.key_header,
+            headers={"Accept": "application/json"},
+            route=self._route,
+        )
+        answer = exchange(call, self._limits, deadline, cancel, progress)
+        if answer.status != 200:
+            raise self.fault(answer)
+        made = self.read(self._json(answer), lambda url: self._linked(url, deadline, cancel, progress))
+        return replace(made, data=self.checked(made.data))
+
+    def fault(self, answer: Answer) -> Fault:
+        """The fault for an answer with a status other than 200; what a safety filter says is a refusal."""
+        fault = status_fault(answer.status, answer.body, answer.headers, self.host, self._key)
+        said = f"{fault.sentence} {answer.body[:4000].decode('utf-8', 'replace')}".lower()
+        if answer.status in (400, 403, 422) and fault.error.kind != "money" and any(w in said for w in _FILTERED):
+            return self.refused(fault.sentence)
+        return fault
+
+    def refused(self, sentence: str = "") -> Fault:
+        """The fault for words that the service will not paint."""
+        message = f"The image model at {self.host} refused to paint this.{quoted(plain(sentence, self._key))}"
+        return Fault(ServiceError(message, "Simpler words are tried next.", "refusal"), sentence=sentence)
+
+    def foreign(self, what: str) -> Fault:
+        """The fault for a reply that holds no image."""
+        message = f"The image model at {self.host} answered with {what} instead of an image."
+        return Fault(ServiceError(message, "Check that the model's name is that of an image model.", "shape"))
+
+    def _json(self, answer: Answer) -> Mapping[str, Any]:
+        try:
+            data = json.loads(answer.body)
+        except (ValueError, RecursionError):
+            page = "html" in answer.headers.get("Content-Type", "").lower() or answer.body.lstrip()[:1] == b"<"
+            raise self.foreign("a web page" if page else "something unreadable") from None
+        if not isinstance(data, dict):
+            raise self.foreign("something else")
+        return data
+
+    def _linked(
+        self, url: str, deadline: float, cancel: threading.Event, progress: Callable[[str], None] | None
+    ) -> bytes:
+        """What lies at a link of the reply. The key is not sent there."""
+        try:
+            parts = urlsplit(url)
+            own = is_local_url(self.base_url) and parts.hostname == self.host and parts.scheme == "http"
+            good = own or (parts.scheme == "https" and bool(parts.hostname) and not is_local_url(url))
+        except ValueError:
+            good = False
+        if not good:
+            raise self.foreign("a link that cannot be followed")
+        answer = exchange(Call(url=url, route=self._route), self._limits, deadline, cancel, progress)
+        if answer.status != 200:
+            raise self.foreign("a link that leads nowhere")
+        return answer.body
+
+    def checked(self, data: bytes) -> bytes:
+        """The bytes, once they are known to be an image that can be opened whole. Raises Fault."""
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                with Image.open(io.BytesIO(data), formats=_FORMATS) as image:
+                    size = image.size
+                    if size[0] * size[1] > MOST_PIXELS:
+                        raise self.foreign(f"an image of {size[0]} x {size[1]} pixels")
+                    image.load()
+        except Fault:
+            raise
+        except Exception:
+            # Decoders raise almost anything on damaged bytes.
+            raise self.foreign("bytes that are no image") from None
+        if min(size) < LEAST_SIDE:
+            raise self.foreign(f"an image of {size[0]} x {size[1]} pixels")
+        return data
+
+
+_FILTERED = (
+    "content_policy",
+    "content policy",
+    "moderation",
+    "safety",
+    "content_filter",
+    "blocked by",
+    "responsible ai",
+)
+
+
+def from_base64(text: Any) -> bytes | None:
+    """Bytes written as base64, with or without a data URL's head; None where it is none."""
+    if not isinstance(text, str) or not text:
+        return None
+    if text.startswith("data:"):
+        text = text.partition(",")[2]
+    try:
+        return base64.b64decode(text, validate=False) or None
+    except (binascii.Error, ValueError):
+        return None
+
+
+def count_of(value: Any) -> int:
+    """A count in a reply, 0 where it is none."""
+    return value if isinstance(value, int) and not isinstance(value, bool) and value > 0 else 0
+
+
+FINAL_KINDS: frozenset[FaultKind] = frozenset(
+    ("money", "key", "model", "network", "name", "refused", "timeout", "tls", "proxy", "redirect", "rate", "server")
+)
+"""Kinds of failure that another request would meet again."""
