@@ -31,6 +31,7 @@ benchmark: setup
 	$(RUN)/python -m benchmark.stages
 	$(RUN)/code-as-room samples/bedroom/picture.png --replies samples/bedroom/replies --out out/benchmark
 	$(RUN)/python -m benchmark.layout out/benchmark/scene.json samples/bedroom/truth.json out/benchmark/memory.json
+	$(RUN)/python -m benchmark.furnished out/benchmark --truth samples/bedroom/truth.json
 
 # Stages 1 to 4 replayed from the recordings of our own pictures, scored beside the direct answer.
 layout-table: setup

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What stages 1 to 4 and the export take beside the model's answers, for a room of 40 objects: `python -m benchmark.stages`.
+"""What all stages and the export take beside the model's answers, for a room of 40 objects: `python -m benchmark.stages`.
 
 The room is made up (the same every time), drawn through a known camera, and answered from the truth with small errors,
-so that nothing is waited for and every step has its usual work. Add `--profile` for the costliest functions.
+so that nothing is waited for and every step has its usual work; its objects get the programs that the sample's model
+wrote. Add `--profile N` for the costliest functions, `--run FOLDER` for what another run's stages 5 to 7 asked.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import json
 import math
 import pstats
 import random
+import re
 import resource
 import sys
 import tempfile
@@ -30,17 +32,22 @@ from code_as_room.pipeline.artifacts.camera import CameraModel
 from code_as_room.pipeline.artifacts.layout import LayoutProgram
 from code_as_room.pipeline.geometry.camera import camera_from, project, tilt_rotation
 from code_as_room.pipeline.geometry.footprint import image_box_of
-from code_as_room.pipeline.memory import Memory
+from code_as_room.pipeline.memory import Memory, load_memory
 from code_as_room.pipeline.models.base import Prompt, Reply
 from code_as_room.pipeline.picture import read_picture
 from code_as_room.pipeline.run import Run
 from code_as_room.pipeline.stages import all_stages
 from PIL import Image, ImageDraw
 
+from .metrics.runs import FURNISHING_STAGES, costs_of
+
 WIDTH, DEPTH, HEIGHT = 8.0, 6.0, 2.6
 PIXELS = (2400, 1900)
 CAMERA_HEIGHT = 9.0
 TARGETS = {"seconds": 10.0, "gigabytes": 1.5, "prompt": 40_000}
+FURNISHING = {"calls": 20, "rounds": 4, "prompt_bytes": 250_000}
+RECORDED = Path(__file__).resolve().parents[1] / "samples" / "bedroom" / "replies" / "replies.json"
+_NAMED = re.compile(r"name the def (\w+)")
 Thing = dict[str, Any]
 
 
@@ -114,15 +121,35 @@ class Answers:
             "03_critique/1": {"score": 80, "edits": [_move(o, -4) for o in objects[2:4]]},
             "03_critique": {"score": 90, "edits": []},
             "04_auxiliary": {"placements": []},
+            "05_descriptions": {"room_style": "calm", "objects": []},
+            "06_correct": {"objects": []},
         }
+        self._programs = _recorded_programs()
 
     def answer(self, prompt: Prompt, cancel: threading.Event, progress: Callable[[str], None] | None = None) -> Reply:
         began = time.perf_counter()
         self.calls += 1
         self.largest = max(self.largest, len(prompt.text.encode()))
-        text = json.dumps(next(v for k, v in self._by_key.items() if prompt.key.startswith(k)))
+        if prompt.key.startswith("06_programs"):
+            text = json.dumps(self._written(prompt))
+        else:
+            text = json.dumps(next(v for k, v in self._by_key.items() if prompt.key.startswith(k)))
         self.seconds += time.perf_counter() - began
         return Reply(text=text, model=self.name)
+
+    def _written(self, prompt: Prompt) -> Thing:
+        """A program for every object that is asked for."""
+        names = _NAMED.findall(prompt.text)
+        sources = [self._programs[(3 * self.calls + n) % len(self._programs)] for n in range(len(names))]
+        written = zip(names, sources, strict=True)
+        return {"objects": [{"id": name, "program": source.replace("_OWN_NAME_", name)} for name, source in written]}
+
+
+def _recorded_programs() -> list[str]:
+    """The programs that the sample's model wrote, without their names."""
+    replies = json.loads(RECORDED.read_text(encoding="utf-8"))["replies"]
+    objects = [o for key, r in replies.items() if "06_programs" in key for o in r["reply"]["objects"]]
+    return [re.sub(rf"\b{re.escape(o['id'])}\b(?=\(size)", "_OWN_NAME_", o["program"]) for o in objects]
 
 
 def _object(camera: CameraModel, thing: Thing, dice: random.Random) -> Thing:
@@ -235,7 +262,12 @@ def main() -> None:
     """Measure, and print plain lines against the targets."""
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--profile", type=int, default=0, metavar="N", help="also print the N costliest functions")
-    most = options.parse_args().profile
+    options.add_argument("--run", type=Path, metavar="FOLDER", help="only tell what stages 5 to 7 of a run asked")
+    chosen = options.parse_args()
+    if chosen.run:
+        _tell_furnishing(load_memory((chosen.run / "memory.json").read_text(encoding="utf-8")))
+        return
+    most = chosen.profile
     profile = cProfile.Profile() if most else None
     with tempfile.TemporaryDirectory() as folder:
         if profile:
@@ -248,17 +280,30 @@ def main() -> None:
     assert layout is not None and final is not None
     rounds = len(layout.iterations)
     states = [entry.state for entry in final.ledger]
-    total = sum(seconds for _, seconds in lines)
+    furnishing = sum(seconds for name, seconds in lines if name.startswith(FURNISHING_STAGES))
+    total = sum(seconds for _, seconds in lines) - furnishing
     # Kilobytes on Linux, bytes on macOS.
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / (1e9 if sys.platform == "darwin" else 1e6)
-    print(f"objects: {len(states)}, {states.count('placed')} placed; rounds of the layout loop: {rounds}")
-    _against("all but the model's answers", total, TARGETS["seconds"], "s")
+    counts = ", ".join(f"{states.count(state)} {state}" for state in sorted(set(states)))
+    print(f"objects: {len(states)}, {counts}; rounds of the layout loop: {rounds}")
+    _against("stages 1 to 4 and the export, but the model's answers", total, TARGETS["seconds"], "s")
+    print(f"stages 5 to 7, but the model's answers: {furnishing:.2f} s")
     _against("most memory of the process", peak, TARGETS["gigabytes"], "GB")
-    _against("model calls", answers.calls, 4 + 2 * rounds, "")
+    asked = costs_of(run.memory)
+    _against("model calls of stages 1 to 4", asked.calls, 4 + 2 * rounds, "")
+    _tell_furnishing(run.memory)
     _against("largest prompt text", answers.largest, TARGETS["prompt"], "bytes")
     if profile:
         pstats.Stats(profile).sort_stats("cumulative").print_stats(most)
         pstats.Stats(profile).sort_stats("tottime").print_stats(most)
+
+
+def _tell_furnishing(memory: Memory) -> None:
+    """What stages 5 to 7 asked, against the limits of a room of 40 objects."""
+    asked = costs_of(memory, FURNISHING_STAGES)
+    _against("model calls of stages 5 to 7", asked.calls, FURNISHING["calls"], "")
+    _against("sequential rounds of stages 5 to 7", asked.rounds, FURNISHING["rounds"], "")
+    _against("prompt text of stages 5 to 7", asked.prompt_bytes, FURNISHING["prompt_bytes"], "bytes")
 
 
 def _against(what: str, value: float, most: float, unit: str) -> None:

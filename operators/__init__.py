@@ -14,6 +14,7 @@ _command: Any = None
 
 def _classes() -> tuple[type, ...]:
     from . import (
+        asset_ops,
         connection_ops,
         consent,
         detail_ops,
@@ -26,6 +27,7 @@ def _classes() -> tuple[type, ...]:
         picture_sources,
         program_ops,
         properties,
+        render_ops,
         result_ops,
         rounds,
         stage_ops,
@@ -41,8 +43,10 @@ def _classes() -> tuple[type, ...]:
         object_ops,
         rounds,
         result_ops,
+        render_ops,
         program_ops,
         detail_ops,
+        asset_ops,
         hand_ops,
         journal_ops,
         overlay,
@@ -63,7 +67,7 @@ def register() -> None:
     global _command
     import bpy
 
-    from . import handlers, keymaps, object_list, overlay, properties, rounds
+    from . import handlers, keymaps, object_list, overlay, properties, render_ops, rounds
 
     utils: Any = bpy.utils
     scene_type: Any = bpy.types.Scene
@@ -74,6 +78,7 @@ def register() -> None:
     scene_type.code_as_room = pointer(type=properties.CodeAsRoomSettings, name="Code-as-Room")
     object_list.register()
     rounds.register()
+    render_ops.register()
     overlay.register()
     handlers.register()
     keymaps.register()
@@ -85,7 +90,7 @@ def unregister() -> None:
     global _command
     import bpy
 
-    from . import connection, handlers, keymaps, object_list, overlay, rounds
+    from . import connection, handlers, keymaps, object_list, overlay, render_ops, rounds
 
     connection.forget()
     if _command is not None:
@@ -94,6 +99,7 @@ def unregister() -> None:
     keymaps.unregister()
     handlers.unregister()
     overlay.unregister()
+    render_ops.unregister()
     rounds.unregister()
     object_list.unregister()
     scene_type: Any = bpy.types.Scene

@@ -37,6 +37,15 @@ def parser(program: str) -> argparse.ArgumentParser:
     )
     result.add_argument("--notes", default="", help="a hint for the model, such as 'the bed is 1.4 m wide'")
     result.add_argument("--iterations", type=int, default=5, metavar="N", help="most rounds of the layout loop (0-5)")
+    result.add_argument(
+        "--render",
+        nargs="?",
+        const=768,
+        default=0,
+        type=int,
+        metavar="PIXELS",
+        help="render the room's views too (render_reference.png, render_top.png, ...), with Cycles, this long a side (768)",
+    )
     result.add_argument("--resume", action="store_true", help="go on from DIR/memory.json; finished stages are kept")
     group = result.add_argument_group("who answers (default: the built-in analysis, which needs no model)")
     group.add_argument("--base-url", metavar="URL", help="an OpenAI-style service, such as http://localhost:1234/v1")
@@ -121,6 +130,8 @@ def _perform(options: argparse.Namespace) -> int:
             run.run_all([stage])
             kept.keep(memory)
         _finish(run, folder)
+        if options.render:
+            _render(bpy.context.scene, folder, max(64, min(4096, options.render)))
     except BaseException:
         # A client that is still waiting for an answer gives up on this.
         run.cancel.set()
@@ -148,6 +159,15 @@ def _finish(run: Run, folder: Path) -> None:
     print(f"Results in {folder}:")
     for path in paths:
         print(f"  {path.name}")
+
+
+def _render(scene: object, folder: Path, long_side: int) -> None:
+    """A picture of each of the room's cameras beside the other results."""
+    from ..pipeline.scene.shoot import camera_lines, shoot
+
+    for line in camera_lines(scene):
+        print(f"  Rendering {line.id}", flush=True)
+        shoot(scene, line.id, folder / f"render_{line.id}.png", long_side)
 
 
 def prepare_folder(folder: Path, option: str = "--out") -> Path:

@@ -9,13 +9,16 @@ import bpy
 
 from ..pipeline.errors import RoomError
 from ..pipeline.program.assemble import split_room
+from ..pipeline.run_assets import take_off
 from ..pipeline.run_modelling import GEOMETRY, forget_own, function_line, show_as_boxes
 from ..pipeline.stages import all_stages
+from ..pipeline.stages.base import Stage
 from . import driver, object_list, own_room, room_memory, rooms, view_state
 from .base import RoomOperator, allow, busy_blocker
 from .program_ops import show_line
 from .result_ops import show_text
 from .scene_backend import ResolvedScene
+from .stage_ops import StageOperator
 
 
 def blocker(context: Any) -> str:
@@ -70,24 +73,37 @@ class CODE_AS_ROOM_OT_show_boxes(DetailOperator):
         self.report({"INFO"}, f"{count} object{'' if count == 1 else 's'} {what}")
 
 
-class CODE_AS_ROOM_OT_detail_again(DetailOperator):
+class CODE_AS_ROOM_OT_detail_again(StageOperator):
     """Model the selected objects anew; also those whose functions you edited. Everything else stays as it is"""
 
     bl_idname = "code_as_room.detail_again"
     bl_label = "Detail Again"
     bl_options = {"REGISTER"}
 
-    def perform(self, context: bpy.types.Context) -> None:
-        """Start the geometry stage for them."""
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Geometry must have run, and objects be selected."""
+        return allow(cls, blocker(context))
+
+    def begin(self, context: bpy.types.Context) -> None:
+        """Start the geometry stage for them, and what was done after it: it begins where stage 4 had put small things."""
         scene = context.scene
         names = object_list.selected_names(scene)
-        own_room.prepare(scene)
+        driver.make_run(scene)  # what cannot be started is refused before anything is given up
         run = room_memory.run_of(scene)
         run.take_over_edits()
         forget_own(run.memory, names)
+        take_off(run, names, refused=False)
         room_memory.keep(run)
-        stage = next(stage for stage in all_stages() if stage.id == GEOMETRY)
-        driver.start(scene, [stage], again=True, fresh=True, only=names)
+        driver.start(scene, _stages_from_geometry(scene), again=True, fresh=True, only=names, step=self.bl_label)
+
+
+def _stages_from_geometry(scene: Any) -> list[Stage]:
+    """The geometry stage, and those after it that are done and can be done for single objects."""
+    state, stages = view_state.peek(scene), all_stages()
+    place = next(n for n, stage in enumerate(stages) if stage.id == GEOMETRY)
+    done = {row.id for row in state.stages if row.status == "done"} if state is not None else set()
+    return [stages[place], *(s for s in stages[place + 1 :] if s.partial and s.id in done)]
 
 
 class CODE_AS_ROOM_OT_edit_function(RoomOperator):

@@ -19,7 +19,7 @@ from ..pipeline.errors import Cancelled, RoomError
 from ..pipeline.run import Run, StageReport
 from ..pipeline.run_corrections import bring_up_to_date
 from ..pipeline.stages.base import Stage
-from . import clients, journals, late, own_room, properties, reference, room_memory, view_state
+from . import asset_shelf, clients, journals, late, own_room, properties, reference, room_memory, view_state
 from .job import Job
 from .meanwhile import NotApplied, in_hand
 from .progress import Durations, Progress
@@ -97,9 +97,8 @@ def make_run(scene: Any) -> tuple[Run, ResolvedScene]:
     memory = room_memory.copy_of(room_memory.memory_of(scene))
     memory.settings = properties.memory_settings(scene.code_as_room, memory.settings)
     journal = journals.journal_of(picture.sha256)
-    return Run(
-        picture, memory, clients.room_client(picture.sha256, memory.cost()[2]), backend, journal=journal
-    ), backend
+    client = clients.room_client(picture.sha256, memory.cost()[2])
+    return Run(picture, memory, client, backend, journal=journal, shelf=asset_shelf.shelf()), backend
 
 
 def start(
@@ -108,6 +107,7 @@ def start(
     again: bool = False,
     fresh: bool = False,
     only: frozenset[str] | None = None,
+    step: str = "",
 ) -> Job:
     """Begin a job; `run_blocking` or the window's timer takes it to its end.
 
@@ -115,6 +115,7 @@ def start(
         again: run the stages even where they are done.
         fresh: ask again even where memory holds an answer.
         only: ids of the objects that are to be done anew, None for all.
+        step: name of the one undo step of all stages together, "" for one a stage.
 
     Raises:
         RoomError: another job is on its way, or as `make_run`.
@@ -129,7 +130,10 @@ def start(
     def stage_done(title: str) -> None:
         view_state.forget_failure(uid, job.progress.stage)
         _follow_camera(uid)
-        _push_undo(f"Room: {title}")
+        if not step or job.stages_done == len(stages):
+            _push_undo(f"Room: {step or title}")
+        else:
+            job.wrote = True  # else undoing what the artist does next would take it along, were the job stopped now
         _refresh(uid)
 
     for stage in stages:

@@ -216,8 +216,9 @@ def _frame(context: Any) -> tuple[Points, Points] | None:
 
 def _corners(view: _View, scene: Any, camera: Any) -> Points | None:
     """Region pixels of the picture's upper left and lower right corner, (2, 2)."""
-    size = picture_size(camera) or tuple(scene.code_as_room.picture.size)
-    if not min(size) > 0:
+    picture = scene.code_as_room.picture
+    size = picture_size(camera) or (None if picture is None else tuple(picture.size))
+    if size is None or not min(size) > 0:
         return None
     first, _, last, _ = frame_corners(camera, size[0] / size[1])
     return _projected(np.stack([first, last]), view)

@@ -8,13 +8,14 @@ from typing import Any
 import bpy
 from bpy.app.handlers import persistent
 
-from . import driver, fitted_view, journals, own_room, room_memory, rooms, state_reading, view_state
+from . import asset_search, driver, fitted_view, journals, own_room, room_memory, rooms, state_reading, view_state
 
 
 @persistent  # type: ignore[untyped-decorator]
 def _before_load(*_: Any) -> None:
     """A run belongs to the file that is open."""
     driver.cancel_for_load()
+    asset_search.cancel()
     room_memory.forget_all()
     rooms.forget_all()
     view_state.forget_all()
@@ -69,6 +70,7 @@ def register() -> None:
 def unregister() -> None:
     """Remove the handlers, and end what is running."""
     driver.cancel_for_load()
+    asset_search.cancel()
     for handlers, function in reversed(_lists()):
         if function in handlers:
             handlers.remove(function)

@@ -28,7 +28,7 @@ from ..pipeline.models.base import name_of
 from ..pipeline.run import Run, StageSession
 from ..pipeline.scene.plan import plan_build, warm_up
 from ..pipeline.stages.base import Stage
-from ..pipeline.stages.wishes import Ask, Build, Render, Tell
+from ..pipeline.stages.wishes import Ask, Build, FindAssets, Render, Tell
 from . import clients
 from .building import Building
 from .meanwhile import Meanwhile, in_hand, outdated
@@ -192,9 +192,12 @@ class Job:
             nonlocal session
             try:
                 session = self._session = move()
-                while isinstance(session.wish, Ask):
+                while isinstance(session.wish, Ask | FindAssets):
                     if self.run.cancel.is_set():
                         raise Cancelled
+                    if isinstance(session.wish, FindAssets):  # reads files, which may take a while
+                        session.send(session.act(session.wish))
+                        continue
                     self.phase = "waiting for the model"
                     replies = session.ask(session.wish, self._worker.tell)
                     self.phase = "computing"

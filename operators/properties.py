@@ -155,6 +155,29 @@ class CodeAsRoomSettings(bpy.types.PropertyGroup):
         ),
         update=_changed,
     )
+    use_assets: bpy.props.BoolProperty(  # type: ignore[valid-type]
+        name="Use My Assets",
+        description="Let small things look like assets of your own asset libraries (Preferences, File Paths) where one "
+        "fits well enough. A change counts from the next run of the stage Small objects on",
+        default=True,
+        update=_changed,
+    )
+    render_engine: bpy.props.EnumProperty(  # type: ignore[valid-type]
+        name="Engine",
+        description="What renders the room's views",
+        items=(
+            ("CYCLES", "Cycles", "Follows the light: the picture to show, on the graphics card if Cycles may use it"),
+            ("EEVEE", "EEVEE", "Quick on a graphics card, with less exact light"),
+        ),
+    )
+    render_quality: bpy.props.EnumProperty(  # type: ignore[valid-type]
+        name="Quality",
+        description="How large and how carefully the views are rendered",
+        items=(
+            ("PREVIEW", "Preview", "768 pixels, about a minute a picture on a small processor"),
+            ("FINE", "Fine", "1536 pixels, many minutes a picture without a graphics card"),
+        ),
+    )
     objects: bpy.props.CollectionProperty(  # type: ignore[valid-type]
         name="Objects",
         description="A row for each object that was detected or added",
@@ -177,6 +200,7 @@ def memory_settings(settings: Any, earlier: dict[str, str]) -> dict[str, str]:
         "wall_height_m": f"{settings.wall_height:.6g}" if settings.use_wall_height else "",
         "notes": settings.notes.strip(),
         "iterations": str(settings.iterations),
+        "assets": "" if settings.use_assets else "off",
         "objects": "" if settings.modelling == "AUTO" else settings.modelling.lower(),
     }
     for name, value in values.items():

@@ -18,7 +18,7 @@ from ..pipeline.run import Run
 from ..pipeline.scene.ownership import check_own
 from ..pipeline.scene.tags import find_room_collection
 from ..pipeline.scene.texts import MEMORY, read_text
-from . import clients, journals, properties, reference
+from . import asset_shelf, clients, journals, properties, reference
 from .scene_backend import ResolvedScene
 
 _MOST = 6
@@ -96,7 +96,7 @@ def run_of(scene: Any) -> Run:
     memory = copy_of(memory_of(scene))
     memory.settings = properties.memory_settings(scene.code_as_room, memory.settings)
     journal = journals.journal_of(picture.sha256)
-    return Run(picture, memory, clients.NOBODY, ResolvedScene(scene), journal=journal)
+    return Run(picture, memory, clients.NOBODY, ResolvedScene(scene), journal=journal, shelf=asset_shelf.shelf())
 
 
 def keep(run: Run) -> None:

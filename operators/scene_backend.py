@@ -9,13 +9,14 @@ running, so it only keeps the text; `flush` writes it on the main thread.
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import bpy
 
+from ..pipeline.artifacts.assets import AssetRef, ChosenAsset
 from ..pipeline.artifacts.camera import CameraModel
 from ..pipeline.artifacts.layout import LayoutEdit
 from ..pipeline.artifacts.scene import SceneDocument
@@ -85,6 +86,21 @@ class ResolvedScene:
         """As `SceneBackend.read_back`."""
         with self._scene() as scene:
             return scene.read_back()
+
+    def prepare_asset(self, ref: AssetRef, file: Path | None) -> tuple[float, float, float]:
+        """As `Wardrobe.prepare_asset`."""
+        with self._scene() as scene:
+            return scene.prepare_asset(ref, file)
+
+    def dress(self, chosen: Sequence[ChosenAsset], files: Mapping[str, Path]) -> dict[str, str]:
+        """As `Wardrobe.dress`."""
+        with self._scene() as scene:
+            return scene.dress(chosen, files)
+
+    def undress(self, ids: Collection[str]) -> list[str]:
+        """As `Wardrobe.undress`."""
+        with self._scene() as scene:
+            return scene.undress(ids)
 
     def text_edits(self) -> list[LayoutEdit] | None:
         """As `HandScene.text_edits`."""

@@ -14,6 +14,7 @@ from pydantic import BaseModel
 
 from ..pipeline.analysis.scale import scale_sentence
 from ..pipeline.artifacts.analysis import Calibration, SceneAnalysis
+from ..pipeline.artifacts.assets import ChosenAssets
 from ..pipeline.artifacts.corrections import Corrections
 from ..pipeline.artifacts.hand import HandEdits
 from ..pipeline.artifacts.layout import LayoutEdit, LayoutProgram
@@ -129,6 +130,7 @@ def _read_facts(memory: Memory, picture: ReferencePicture) -> dict[str, Any]:
         "severities": tuple(Counter(f.severity for f in findings).items()),
         "findings": tuple(findings),
         "objects": rows,
+        "assets": tuple((kept(memory, ChosenAssets) or ChosenAssets()).objects),
         "rounds": round_rows(kept(memory, LayoutProgram, (LOOP,))),
     }
 

@@ -20,6 +20,7 @@ from ..pipeline.errors import RoomError
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from ..pipeline.artifacts.assets import ChosenAsset
     from ..pipeline.report_objects import ObjectRow
     from ..pipeline.report_rounds import RoundRow
 
@@ -76,6 +77,7 @@ class RoomState:
         hand_edits: edits by hand in all.
         camera_name: how the picture was taken, in words; scale_words: where the size comes from and how sure it is.
         reference_key: names the reference image, "" when there is none.
+        assets: what objects look like, of the artist's asset libraries.
         estimate: what running the stages that are left may cost, in words; spending: what was spent, and the cap.
     """
 
@@ -100,6 +102,7 @@ class RoomState:
     findings: tuple[Finding, ...] = ()
     objects: tuple[ObjectRow, ...] = ()
     rounds: tuple[RoundRow, ...] = ()
+    assets: tuple[ChosenAsset, ...] = ()
     has_layout: bool = False
     has_memory: bool = False
     estimate: str = ""

@@ -11,6 +11,7 @@ from ..operators import driver, object_list, view_state
 from ..operators.view_state import RoomState
 from ..pipeline.report import words
 from ..pipeline.report_objects import ObjectRow
+from .assets import draw_asset
 from .base import RoomPanel, known_operator
 from .sentences import draw_sentence, line_length, plural
 from .through_camera import draw_boxes
@@ -125,6 +126,8 @@ class CODE_AS_ROOM_MT_objects(bpy.types.Menu):
             layout.operator("code_as_room.show_boxes", text=text, icon=icon).boxes = boxes
         layout.operator("code_as_room.detail_again", icon="FILE_REFRESH")
         layout.operator("code_as_room.edit_function", icon="TEXT")
+        layout.operator("code_as_room.find_assets", text="Find Assets", icon="ASSET_MANAGER")
+        layout.operator("code_as_room.drop_assets", text="Without Assets", icon="X")
         layout.separator()
         operator = layout.operator("code_as_room.include_objects", text="Leave Out Selected", icon="CHECKBOX_DEHLT")
         operator.group, operator.include = "SELECTED", False
@@ -194,6 +197,7 @@ def draw_active(layout: Any, context: Any, state: RoomState) -> None:
         operator.group, operator.lock, operator.identifier = "SELECTED", False, row.id
     elif row.edited:
         draw_sentence(box, "Edited by hand, unlocked since", context, icon="UNLOCKED")
+    draw_asset(layout, context, state, row.name)
 
 
 class CODE_AS_ROOM_PT_hand_edits(RoomPanel):

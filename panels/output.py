@@ -16,7 +16,7 @@ class CODE_AS_ROOM_PT_output(RoomPanel):
 
     bl_idname = "CODE_AS_ROOM_PT_output"
     bl_label = "Output"
-    bl_order = 5
+    bl_order = 6
 
     def draw_state(self, layout: Any, context: Any, state: RoomState) -> None:
         """Write the results; look at the texts; apply an edited program."""

@@ -103,6 +103,7 @@ class CODE_AS_ROOM_PT_options(RoomPanel):
         notes.prop(settings, "notes", placeholder="Hint for the model")
         column.prop(settings, "iterations")
         column.prop(settings, "modelling")
+        column.prop(settings, "use_assets")
         if known_operator("code_as_room.forget_answers"):
             layout.operator("code_as_room.forget_answers", icon="TRASH")
 

@@ -3,10 +3,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Protocol, runtime_checkable
 
+from .artifacts.assets import AssetRef, ChosenAsset
 from .artifacts.camera import CameraModel
 from .artifacts.layout import LayoutEdit
 from .artifacts.scene import SceneDocument
@@ -63,6 +64,30 @@ class Studio(Protocol):
 
     def portrait(self, shapes: Sequence[Shape], family: str, long_side: int) -> bytes:
         """PNG of an object from its front at eye level and from above, side by side; b"" where nothing can draw."""
+        ...
+
+
+@runtime_checkable
+class Wardrobe(Protocol):
+    """A scene whose objects can look like assets of asset libraries."""
+
+    def prepare_asset(self, ref: AssetRef, file: Path | None) -> tuple[float, float, float]:
+        """Have an asset at hand, unseen; returns its size in metres.
+
+        Args:
+            file: where it is on this computer, None where it is not.
+
+        Raises:
+            SceneError: it cannot be had; nothing of it is left.
+        """
+        ...
+
+    def dress(self, chosen: Sequence[ChosenAsset], files: Mapping[str, Path]) -> dict[str, str]:
+        """Let objects look like assets, each in its proxy's box and pose; what fails is told by the object's id."""
+        ...
+
+    def undress(self, ids: Collection[str]) -> list[str]:
+        """Take assets off these objects, so that the next build gives them their own geometry; returns which had one."""
         ...
 
 

@@ -18,6 +18,7 @@ from typing import Any, TypeVar
 from pydantic import BaseModel, ValidationError
 
 from .artifacts.analysis import Calibration, SceneAnalysis
+from .artifacts.assets import ChosenAssets
 from .artifacts.common import Artifact
 from .artifacts.corrections import Corrections, Found, Rescaled
 from .artifacts.graph import MinorObjects, SceneGraph
@@ -43,6 +44,7 @@ KINDS: dict[str, type[Artifact]] = {
         RoomStyle,
         Geometry,
         OwnModelling,
+        ChosenAssets,
     )
 }
 _CHUNK = 160

@@ -12,6 +12,7 @@ from .artifacts.analysis import Calibration, Finding, SceneAnalysis
 from .artifacts.graph import SceneGraph
 from .artifacts.hand import HandEdits
 from .artifacts.layout import Iteration, LayoutEdit, LayoutProgram, LedgerEntry, ProxyLine
+from .artifacts.surfaces import SmallObjects
 from .errors import RoomError
 from .memory import Entry, Memory
 from .program.lines import parse_layout
@@ -296,6 +297,7 @@ def all_findings(memory: Memory) -> list[Finding]:
         memory.latest(SceneGraph),
         memory.latest(LayoutProgram, (LAYOUT_STAGE,)),
         memory.latest(LayoutProgram),
+        memory.latest(SmallObjects),
         memory.latest(HandEdits),
     )
     found = {(f.severity, f.about, f.message): f for a in artifacts if a is not None for f in a.findings}

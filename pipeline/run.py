@@ -19,6 +19,7 @@ from pydantic import BaseModel
 from .artifacts.corrections import Found
 from .artifacts.hand import HandEdits
 from .artifacts.layout import LayoutEdit, LayoutProgram
+from .artifacts.objects import Furnishing
 from .ask import AskEvent, AskResult, perform_ask
 from .backend import HandScene, SceneBackend, Studio
 from .errors import Cancelled, RoomError
@@ -29,12 +30,14 @@ from .models.strength import modelling_of
 from .picture import ReferencePicture
 from .program.differences import merged
 from .program.patch import patch_text
+from .retrieval.index import Shelf
+from .run_assets import dress, find, prepare
 from .run_corrections import bring_up_to_date, corrections_of, edits_of, found_of, inputs_of, program_of
 from .run_modelling import note_own_functions
 from .run_partial import inputs_after
 from .stages import all_stages
 from .stages.base import Stage, View
-from .stages.wishes import Ask, Build, Portrait, Render, Tell, Wish
+from .stages.wishes import Ask, Build, Dress, FindAssets, Portrait, PrepareAsset, Render, Tell, Wish
 
 Status = Literal["not run", "answered", "done", "stale"]
 """What became of a stage: "answered" when every question was answered but the result is not there, as after undo;
@@ -63,6 +66,7 @@ class Run:
         progress: called with (what, step, steps) for the artist.
         cancel: set it to stop; the stage that runs ends with `Cancelled`.
         journal: where answers are kept as they arrive, whatever becomes of the scene; None for none.
+        shelf: the artist's asset libraries, None for none.
     """
 
     picture: ReferencePicture
@@ -73,6 +77,7 @@ class Run:
     cancel: threading.Event = field(default_factory=threading.Event)
     reports: list[StageReport] = field(default_factory=list)
     journal: AnswerJournal | None = None
+    shelf: Shelf | None = None
     _standing: str = ""
 
     def __post_init__(self) -> None:
@@ -221,6 +226,9 @@ def _current(memory: Memory, kind: type[BaseModel], stages: tuple[str, ...] = ()
     """The artifact of this type as it counts now; a layout program in the metres that hold since."""
     if kind is Found:
         return found_of(memory)
+    if kind is Furnishing:
+        program = program_of(memory, stages)
+        return None if program is None else Furnishing(text=program.text, hand_edits=program.hand_edits)
     return program_of(memory, stages) if kind is LayoutProgram else memory.latest(kind, stages or None)
 
 
@@ -287,13 +295,19 @@ class StageSession:
         return [None if result is None else result.reply for result in results]
 
     def act(self, wish: Wish) -> Any:
-        """Perform a wish that needs Blender's main thread."""
+        """Perform a wish that needs Blender's main thread; `FindAssets` may be performed in any."""
         if isinstance(wish, Tell):
             return self.run.progress(wish.what, wish.step, wish.steps)
         if isinstance(wish, Build):
             return self.run.backend.build(wish.text)
         if isinstance(wish, Render):
             return self.run.backend.render(wish.camera, wish.long_side, wish.labels)
+        if isinstance(wish, FindAssets):
+            return find(self.run, wish)
+        if isinstance(wish, PrepareAsset):
+            return prepare(self.run, wish)
+        if isinstance(wish, Dress):
+            return dress(self.run, wish)
         if isinstance(wish, Portrait):
             backend = self.run.backend
             return backend.portrait(wish.shapes, wish.family, wish.long_side) if isinstance(backend, Studio) else b""

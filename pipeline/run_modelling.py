@@ -9,11 +9,14 @@ from __future__ import annotations
 from collections.abc import Collection
 from typing import TYPE_CHECKING
 
-from .artifacts.layout import LayoutProgram
+from .artifacts.layout import Layout, LayoutProgram
 from .artifacts.objects import Geometry, ObjectProgram, OwnModelling
 from .errors import ProgramError, RoomError
 from .memory import EntryMeta, Memory, dump_memory, now
+from .objects.cloths import furnish_line
 from .objects.text import Modelling, read_modelling, with_statements, without_statements
+from .program.lines import parse_layout
+from .run_assets import change_clothes, chosen_of
 from .run_corrections import ARTIST, program_of
 
 if TYPE_CHECKING:
@@ -74,20 +77,25 @@ def show_as_boxes(run: Run, names: Collection[str], boxes: bool) -> int:
     standing = read_modelling(text)
     program = program_of(run.memory)
     own, geometry = own_of(run.memory), run.memory.latest(Geometry) or Geometry()
+    chosen = chosen_of(run.memory)
     if boxes:
         changed = [i for i in standing.furnished if i in names]
         built = without_statements(text, changed)
     else:
         known = {i: own.functions.get(i, "") for i in names if i in own.boxes and i not in standing.furnished}
-        statements = {i: _statement(i, code, geometry, standing) for i, code in known.items()}
+        layout = parse_layout(text)
+        statements = {i: _statement(i, code, geometry, standing, layout) for i, code in known.items()}
         changed = [i for i, statement in statements.items() if statement]
         built = with_statements(text, [statements[i] for i in changed])
+    dressed = [c for c in chosen.objects if c.id in names and (c.id in own.boxes) != boxes]
+    changed += [c.id for c in dressed if c.id not in changed]
     if not changed:
         raise RoomError(
             "These objects are boxes already." if boxes else "These objects have no geometry that could be shown.",
             "" if boxes else "Use Detail Again.",
         )
     run.backend.build(built)
+    change_clothes(run, changed, [] if boxes else dressed, built)
     left = [i for i in own.boxes if i not in changed]
     meta = EntryMeta(time=now(), model=ARTIST)
     run.memory.append(ARTIST, own.model_copy(update={"boxes": [*left, *changed] if boxes else left}), meta)
@@ -97,13 +105,14 @@ def show_as_boxes(run: Run, names: Collection[str], boxes: bool) -> int:
     return len(changed)
 
 
-def _statement(identifier: str, code: str, geometry: Geometry, standing: Modelling) -> str:
+def _statement(identifier: str, code: str, geometry: Geometry, standing: Modelling, layout: Layout) -> str:
     """The furnish statement that an object had."""
     if code:
         return read_modelling(code).furnished.get(identifier, "")
     made = geometry.of(identifier)
     name = made.function if made is not None else ""
-    return f'furnish("{identifier}", {name})' if name in standing.defs else ""
+    proxy = layout.proxy(identifier)
+    return furnish_line(proxy, name) if name in standing.defs and proxy is not None else ""
 
 
 def _note(memory: Memory, program: LayoutProgram, text: str) -> None:

@@ -11,7 +11,7 @@ from pydantic import BaseModel
 from .artifacts.analysis import Calibration, SceneAnalysis
 from .artifacts.graph import SceneGraph
 from .artifacts.layout import LayoutProgram
-from .artifacts.objects import Descriptions, RoomStyle
+from .artifacts.objects import Descriptions, Geometry, RoomStyle
 from .layout.hand import name_now
 from .memory import Memory, content_hash
 from .program.lines import parse_layout
@@ -66,7 +66,7 @@ def _without(artifact: BaseModel, chosen: set[str]) -> Any:
     if isinstance(artifact, SceneGraph):
         edges = [e for e in artifact.edges if not chosen & {e.source, e.target}]
         return sorted(str(e) for e in edges)
-    if isinstance(artifact, Descriptions):
+    if isinstance(artifact, Descriptions | Geometry):
         return _others(artifact.objects, chosen)
     if isinstance(artifact, RoomStyle):
         return None

@@ -18,7 +18,8 @@ RUNTIME = {"requests", "urllib3", "PIL", "numpy", "pydantic", "pydantic_core"}
 # A file may import its own layer and lower ones. Files beside the folders count by the first word of their name.
 LAYERS = {
     "errors": 0, "artifacts": 0, "program": 1, "geometry": 1, "library": 1, "models": 1, "picture": 1, "memory": 1,
-    "backend": 1, "spending": 1, "journal": 1, "analysis": 2, "layout": 2, "objects": 2, "surfaces": 2, "stages": 3,
+    "backend": 1, "spending": 1, "journal": 1, "analysis": 2, "layout": 2, "objects": 2, "surfaces": 2,
+    "retrieval": 2, "textures": 2, "light": 2, "stages": 3,
     "prompting": 4, "ask": 4, "run": 5, "report": 5, "scene": 6,
 }  # fmt: skip
 
@@ -93,3 +94,11 @@ def test_no_path_of_a_machine_and_no_absolute_import_of_the_add_on() -> None:
         assert not [n for level, n in imports(path) if level == 0 and n.split(".")[0] in ("code_as_room", "bl_ext")], (
             path
         )
+
+
+def test_every_folder_of_the_method_is_installed_as_a_package() -> None:
+    import tomllib
+
+    listed = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["setuptools"]["packages"]
+    folders = {path.parent.relative_to(ROOT).parts for path in PRODUCT if (path.parent / "__init__.py").exists()}
+    assert {".".join(("code_as_room", *parts)) for parts in folders} <= set(listed)

@@ -6,7 +6,7 @@ A run's folder is what `code-as-room --out` writes; of it, `scene.json` and `mem
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -21,12 +21,13 @@ from .direct import direct_answer
 from .rooms import Room, load_result, room_of
 
 LAYOUT_STAGES = ("s01_analysis", "s02_graph", "s03_layout", "s04_auxiliary")
+FURNISHING_STAGES = ("s05_descriptions", "s06_geometry", "s07_surfaces")
 CRITIQUE = "03_critique"
 
 
 @dataclass(frozen=True)
 class Costs:
-    """What stages 1 to 4 asked.
+    """What some stages asked, 1 to 4 unless said otherwise.
 
     Attributes:
         calls: of the model, repairs among them. prompt_bytes: bytes of prompt text.
@@ -84,13 +85,13 @@ def shapes_of(memory: Memory | None) -> dict[str, str] | None:
         return None
 
 
-def costs_of(memory: Memory) -> Costs:
-    """What stages 1 to 4 asked, from the answers that memory keeps."""
+def costs_of(memory: Memory, stages: Sequence[str] = LAYOUT_STAGES) -> Costs:
+    """What these stages asked, from the answers that memory keeps."""
     calls = prompt_bytes = 0
     rounds: dict[tuple[str, int], int] = {}
     critiques = set()
     for entry in memory.entries:
-        if entry.type != "Answer" or entry.stage not in LAYOUT_STAGES:
+        if entry.type != "Answer" or entry.stage not in stages:
             continue
         calls += entry.meta.tries
         prompt_bytes += entry.meta.prompt_bytes

@@ -24,8 +24,10 @@ from ..artifacts.layout import (
     OpeningLine,
     ProxyLine,
     RoomLine,
+    ViewLine,
     WallLine,
     WindowLine,
+    WorldLine,
 )
 from ..program.rewrite import rewrite_lines
 
@@ -117,14 +119,26 @@ def rescaled_line(line: Line, change: Similarity) -> Line:
         return line.model_copy(update={"centre": change.in_room(line.centre), "size": change.sizes(line.size)})
     if isinstance(line, CameraLine):
         matrix = change.camera_matrix(line.matrix)
-        return line.model_copy(update={"matrix": matrix, "ortho_height": line.ortho_height * factor})
+        return line.model_copy(
+            update={"matrix": matrix, "ortho_height": line.ortho_height * factor, "near": line.near * factor}
+        )
     if isinstance(line, LightLine):
         target = None if line.target is None else change.in_room(line.target)
         # A sun has no place: its strength and its angle do not depend on the room's size.
         watts, size = (line.energy, line.size) if line.kind == "sun" else (line.energy * factor**2, line.size * factor)
         return line.model_copy(
-            update={"at": change.in_room(line.at), "target": target, "energy": watts, "size": size},
+            update={
+                "at": change.in_room(line.at),
+                "target": target,
+                "energy": watts,
+                "size": size,
+                "size_y": line.size_y * factor,
+            },
         )
+    if isinstance(line, WorldLine):
+        return line
+    if isinstance(line, ViewLine):
+        return line.model_copy(update={"ceiling": line.ceiling * factor, "cut": line.cut * factor})
     assert isinstance(line, WallLine | DoorLine | WindowLine | OpeningLine)
     lengths = {name: getattr(line, name) * factor for name in ("height", "sill", "thickness") if hasattr(line, name)}
     return line.model_copy(update={"start": change.on_floor(line.start), "end": change.on_floor(line.end), **lengths})

@@ -84,7 +84,12 @@ class ProxyLine(Artifact):
 
 
 class LightLine(Artifact):
-    """`light(id, kind, at, energy=, color=, size=, target=)`: linear colour, energy in Blender's watts."""
+    """`light(id, kind, at, energy=, color=, size=, target=, size_y=, kelvin=, parent=)`: linear colour, watts as Blender's.
+
+    A sun's energy is watts a square metre, its size the angle it is seen under (radians). For area lights `size` and
+    `size_y` are the sides (`size_y` 0: a square), for the others `size` is the radius. The light's colour is `color`
+    times that of `kelvin` (0: white). `parent` is the window, lamp or wall that it shines from and moves with.
+    """
 
     id: str
     kind: Literal["sun", "area", "point", "spot"]
@@ -93,10 +98,46 @@ class LightLine(Artifact):
     color: Metres3 = (1.0, 1.0, 1.0)
     size: float = 0.1
     target: Metres3 | None = None
+    size_y: float = 0.0
+    kelvin: float = 0.0
+    parent: str | None = None
+
+
+class WorldLine(Artifact):
+    """`world(id, color=, strength=, kelvin=, background=)`: the light that comes from all around; once in a room.
+
+    `color` (linear, times the colour of `kelvin`) and `strength` are what shines; `background` (linear) is what a camera
+    sees beyond the room and through its windows.
+    """
+
+    id: str
+    color: Metres3 = (1.0, 1.0, 1.0)
+    strength: float = 0.5
+    kelvin: float = 0.0
+    background: Metres3 = (1.0, 1.0, 1.0)
+
+
+class ViewLine(Artifact):
+    """`view(id, exposure=, transform=, look=, ceiling=, cut=)`: how the room is shown in renders; once in a room.
+
+    `exposure` in stops, `transform` and `look` Blender's names (where a Blender lacks them, the nearest it has).
+    `ceiling` is the height of a ceiling that is seen from below only (0: none); at `cut` (0: nowhere) walls have a solid
+    section, for a camera whose near clip cuts them there. Both in metres.
+    """
+
+    id: str
+    exposure: float = 0.0
+    transform: str = "AgX"
+    look: str = ""
+    ceiling: float = 0.0
+    cut: float = 0.0
 
 
 class CameraLine(Artifact):
-    """`camera(id, kind, matrix=, fov_y=, ortho_height=, image_size=, principal=)`, fields as `CameraModel`."""
+    """`camera(id, kind, matrix=, fov_y=, ortho_height=, image_size=, principal=, near=)`, fields as `CameraModel`.
+
+    What is nearer than `near` metres is cut off.
+    """
 
     id: str
     kind: Literal["perspective", "orthographic"]
@@ -105,9 +146,21 @@ class CameraLine(Artifact):
     ortho_height: float = 0.0
     image_size: tuple[int, int] = (1024, 1024)
     principal: Metres2 = (500.0, 500.0)
+    near: float = 0.02
 
 
-Line = RoomLine | WallLine | DoorLine | WindowLine | OpeningLine | ProxyLine | LightLine | CameraLine
+Line = (
+    RoomLine
+    | WallLine
+    | DoorLine
+    | WindowLine
+    | OpeningLine
+    | ProxyLine
+    | LightLine
+    | CameraLine
+    | WorldLine
+    | ViewLine
+)
 
 
 class Layout(Artifact):
@@ -120,6 +173,8 @@ class Layout(Artifact):
     openings: list[OpeningLine] = []
     proxies: list[ProxyLine] = []
     lights: list[LightLine] = []
+    worlds: list[WorldLine] = []
+    views: list[ViewLine] = []
     cameras: list[CameraLine] = []
 
     def proxy(self, identifier: str) -> ProxyLine | None:
@@ -133,7 +188,7 @@ class LayoutEdit(Artifact):
     Attributes:
         op: move (centre), resize (size), turn (yaw), add (all, or line), remove, recategorise (category, label, salience,
             shape), rename (new_id), reparent (placement and parent), line (the printed layout line that stands from now
-            on for this id: a wall, door, window, opening, light or camera, or "room"). `add` with a line makes such a
+            on for this id: a wall, door, window, opening, light, world, view or camera, or "room"). `add` with a line makes such a
             thing, `remove` takes it away.
         reason: why, in a few words.
         origin: who asked: "model", "solver", "artist"; "parent" for what only moved along with what the artist moved,

@@ -142,6 +142,17 @@ class RoleColourReply(Reply):
     colour: str
 
 
+class Furnishing(Artifact):
+    """The room's text as it was last furnished; stages that lay out anew keep what is still there (never stored itself).
+
+    Attributes:
+        hand_edits: how many hand edits it holds.
+    """
+
+    text: str
+    hand_edits: int = 0
+
+
 class PieceReply(Reply):
     """The library piece that comes nearest to one object; "" when none does."""
 

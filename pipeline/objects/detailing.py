@@ -19,8 +19,8 @@ from ..artifacts.objects import (
 from ..errors import ProgramError
 from ..program.evaluate import evaluate
 from ..program.limits import FINISHED_ROOM_LIMITS
-from ..program.lines import quoted
 from .alike import alike, groups
+from .cloths import furnish_line
 from .library import PLAIN, Made, asked_piece, best_piece
 from .text import Modelling, compose, function_name, read_modelling
 from .written import Written
@@ -136,7 +136,7 @@ class Detailing:
             else:
                 continue
             for member in self.members[proxy.id]:
-                statements[member] = f"furnish({quoted(member)}, {name})"
+                statements[member] = furnish_line(self.layout.proxy(member) or proxy, name)
         others = [o for snippet in self.own.functions.values() for o in _read(snippet).others]
         others += [o for w in self.written.values() for o in _read(w.code).others]
         if self.kept:

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 
 from ..artifacts.layout import Layout
 from ..library import catalogue
+from ..program.finishes import present_names, without_finishes_of_nothing
 from ..program.limits import FINISHED_ROOM_LIMITS
 from ..program.lines import LINE_TYPES, called_name, print_layout
 from ..program.parse_safe import parse
@@ -115,6 +116,7 @@ def compose(layout: Layout, defs: Mapping[str, str], furnish: Mapping[str, str],
     parts = [print_layout(layout).removesuffix(END).rstrip()]
     if used:
         parts.append("# Furniture library\n" + _without(catalogue.source(sorted(used)), defs).strip())
+    others = without_finishes_of_nothing(others, present_names(layout))
     if others:
         parts.append("\n".join(others))
     parts.append("# Objects: each function takes the size of its object (width, depth, height in metres)")
@@ -138,11 +140,12 @@ def relaid(text: str, layout: Layout) -> str:
         ProgramError: as `read_modelling`.
     """
     old = read_modelling(text)
-    if not old.furnished:
+    others = without_finishes_of_nothing(old.others, present_names(layout))
+    if not old.furnished and not any(statement.startswith("finish(") for statement in others):
         return print_layout(layout)
     present = {p.id for p in layout.proxies}
     statements = [statement for i, statement in old.furnished.items() if i in present]
-    kept = [*old.others, *old.defs.values()]
+    kept = [*others, *old.defs.values()]
     body = "\n\n\n".join([print_layout(layout).removesuffix(END).rstrip(), *kept, "\n".join(statements)])
     return body + "\n\n" + END
 

@@ -58,7 +58,7 @@ def take_program(text: str, proxy: ProxyLine, name: str, taken: Collection[str] 
     Raises:
         ProgramError: it is outside the room language, over a limit, or makes nothing of use; the line is in the text.
     """
-    source = _program_of(text)
+    source = program_of(text)
     tree = parse(source, DEFAULT_LIMITS)
     main, source = _named(source, tree, name, taken)
     library = catalogue.source(_library_names(source))
@@ -122,7 +122,7 @@ def _roles(shapes: Sequence[Shape]) -> dict[str, str]:
     return found
 
 
-def _program_of(text: str) -> str:
+def program_of(text: str) -> str:
     """The program in a reply, without code fences, layout lines and furnish statements."""
     fenced = _FENCE.findall(text)
     source = max(fenced, key=len) if fenced else text

@@ -14,6 +14,7 @@ MARKER = "# ==== room ===="
 """The line between the prelude and the room."""
 
 _HERE = Path(__file__).resolve().parent
+_MADE = {**registry.CONSTRUCTORS, **registry.LOOKS}
 _REALISE = _HERE.parent / "scene" / "realise.py"
 
 _HEADER = '''# SPDX-License-Identifier: GPL-3.0-or-later
@@ -45,8 +46,8 @@ _BUILD = '''def build() -> None:
 def prelude_text() -> str:
     """The prelude as the text of one module: header, constructors, the room's shell, and the making of Blender data."""
     roots = [_HERE / "prelude" / "recorder.py"]
-    roots += [_HERE / "prelude" / f"{_module(name)}.py" for name in registry.CONSTRUCTORS]
-    public = {(_module(name), name) for name in registry.CONSTRUCTORS}
+    roots += [_HERE / "prelude" / f"{_module(name)}.py" for name in _MADE]
+    public = {(_module(name), name) for name in _MADE}
     body, names = join_modules([*dict.fromkeys(roots), _REALISE], public)
     title = "# ---- what a room is written with "
     lines = [
@@ -65,7 +66,7 @@ def prelude_text() -> str:
 
 def _module(name: str) -> str:
     """The prelude module that a constructor is defined in."""
-    return registry.CONSTRUCTORS[name].__module__.rpartition(".")[2]
+    return _MADE[name].__module__.rpartition(".")[2]
 
 
 def assemble(room_text: str) -> str:

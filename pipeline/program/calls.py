@@ -9,7 +9,7 @@ from typing import Any
 from ..errors import ProgramError
 from .expressions import Expressions
 from .limits import Meter
-from .refusals import located
+from .refusals import located, misfit
 from .scopes import Scope
 from .values import LONG, Code, Frame, Function, Native, settle, spend_argument
 
@@ -29,6 +29,10 @@ class Calls(Expressions):
         keywords = tuple((k.arg or "", self.compile(k.value, scope)) for k in node.keywords)
         starred = any(isinstance(argument, ast.Starred) for argument in node.args)
         if native is None:
+            if any(isinstance(argument, ast.GeneratorExp) for argument in node.args):
+                raise ProgramError(
+                    f"{name} is no function of the language here, and takes no generator", node.lineno, "Use [...]."
+                )
             function = self.load(name, scope)
             if keywords or starred:
                 return call_value(function, name, self.arguments(node, scope), keywords, node.lineno)
@@ -116,7 +120,7 @@ def call_guarded(meter: Meter, native: Native, arguments: Code, keywords: Keywor
             meter.watch()
             return settle(meter, result)
         except Exception as error:
-            raise located(error, line) from None
+            raise located(error, line, misfit(error, native.name, call)) from None
 
     return run
 

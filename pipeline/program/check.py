@@ -305,9 +305,7 @@ class Checker:
     def on_Lambda(self, node: ast.Lambda) -> list[ast.AST]:
         """lambda x: ..."""
         self.parameters(node.args, node)
-        if node.args.defaults:
-            self.report(node, "defaults of a lambda are not in the room language", "Use a def.")
-        return [node.body]
+        return [*node.args.defaults, node.body]
 
     def on_JoinedStr(self, node: ast.JoinedStr) -> list[ast.AST]:
         """f"..." with plain fields."""

@@ -124,11 +124,12 @@ class Comprehensions(Calls):
     def on_Lambda(self, node: ast.Lambda, scope: Scope) -> Code:
         """lambda a, b: value"""
         inner = self.names.of[node]
+        defaults = self.compile_all(node.args.defaults, scope)
         outside, self.cost = self.cost, 0
         body = self.compile(node.body, inner)
         make = function_maker(self.meter, "lambda", inner, body, self.cost + 1, node.lineno)
         self.cost = outside + STEPS_OF_DEFINITION
-        return lambda f: make(f, ())
+        return lambda f: make(f, tuple([default(f) for default in defaults]))
 
 
 def innermost(meter: Meter, store: Callable[[Frame, Any], None], conditions: tuple[Code, ...], cost: int) -> Loop:

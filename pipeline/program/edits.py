@@ -18,8 +18,10 @@ from ..artifacts.layout import (
     OpeningLine,
     ProxyLine,
     RoomLine,
+    ViewLine,
     WallLine,
     WindowLine,
+    WorldLine,
 )
 from ..errors import ProgramError
 from .lines import checked_fields, name_of, parse_line, rounded_line
@@ -31,6 +33,8 @@ LISTS: dict[str, type[Any]] = {
     "windows": WindowLine,
     "openings": OpeningLine,
     "lights": LightLine,
+    "worlds": WorldLine,
+    "views": ViewLine,
     "cameras": CameraLine,
 }
 """The fields of a layout that hold what is no proxy, and the type of their lines."""
@@ -91,8 +95,8 @@ def apply_edits(layout: Layout, edits: list[LayoutEdit]) -> tuple[Layout, list[F
       of what hangs where it is, unless the edit gives a centre too.
     - `add` needs category, centre and size; a new object comes after the last one of its salience. With a `line` it
       adds a wall, door, window, opening, light or camera, or puts the line in the place of the one with this id.
-    - `remove` gives the object's children to its own parent. A wall takes what is cut into it along. `rename` follows
-      into an object's children.
+    - `remove` gives the object's children to its own parent. A wall takes what is cut into it along, and a lamp or window
+      the light that shines from it. `rename` follows into an object's children and lights.
     - `reparent` sets the placement, where given, and the parent (None: no parent).
     - `line` puts a line in the place of the one with this id, which must be of the same kind.
 
@@ -177,7 +181,7 @@ def _line(state: Edited, edit: LayoutEdit) -> None:
         return
     former = state.lines.get(edit.id)
     if former is None:
-        raise _Unusable(f"there is no wall, door, window, opening, light or camera {edit.id!r}")
+        raise _Unusable(f"there is no wall, door, window, opening, light, world, view or camera {edit.id!r}")
     if type(former) is not type(line):
         raise _Unusable(f"{edit.id!r} is a {name_of(former)}, not a {name_of(line)}")
     state.lines[edit.id] = line
@@ -195,6 +199,8 @@ def _line_of(state: Edited, edit: LayoutEdit) -> Line:
         raise _Unusable("its line has another id")
     if isinstance(line, DoorLine | WindowLine | OpeningLine) and not isinstance(state.lines.get(line.wall), WallLine):
         raise _Unusable(f"there is no wall {line.wall!r}")
+    if isinstance(line, LightLine):
+        _known_parent(state, edit.id, line.parent)
     return line
 
 
@@ -223,6 +229,9 @@ def _leave_children(state: Edited, edit: LayoutEdit, gone: str, parent: str | No
             state.change(proxy.id, parent=parent)
             to = f"now belongs to {parent!r}" if parent else "now has no parent"
             state.note(edit, f"{proxy.id!r} stood on {gone!r}, which was removed; it {to}.")
+    for light in [line for line in state.lines.values() if isinstance(line, LightLine) and line.parent == gone]:
+        del state.lines[light.id]
+        state.note(edit, f"The light {light.id!r} shone from {gone!r}, which was removed, and went with it.")
 
 
 def _rename(state: Edited, edit: LayoutEdit) -> None:
@@ -235,6 +244,9 @@ def _rename(state: Edited, edit: LayoutEdit) -> None:
     for proxy in list(state.proxies):
         if proxy.parent == edit.id:
             state.change(proxy.id, parent=new)
+    for name, line in state.lines.items():
+        if isinstance(line, LightLine) and line.parent == edit.id:
+            state.lines[name] = line.model_copy(update={"parent": new})
 
 
 def _reparent(state: Edited, edit: LayoutEdit) -> None:

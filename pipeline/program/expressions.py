@@ -66,7 +66,7 @@ class Expressions:
         slot = owner.slots[name]
         frame, target = scope.frame, owner.frame
         if frame is target:
-            return load_parameter(slot) if name in owner.surely else load_local(slot, name)
+            return load_parameter(slot) if name in owner.surely else load_local(slot, name, name in self.natives)
         if target is self.names.module:
             return load_global(self.top, slot, name)
         links = []

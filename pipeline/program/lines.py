@@ -22,8 +22,10 @@ from ..artifacts.layout import (
     OpeningLine,
     ProxyLine,
     RoomLine,
+    ViewLine,
     WallLine,
     WindowLine,
+    WorldLine,
 )
 from ..errors import ProgramError
 from .limits import FINISHED_ROOM_LIMITS
@@ -42,6 +44,8 @@ LINE_TYPES: dict[str, type[Line]] = {
     "opening": OpeningLine,
     "proxy": ProxyLine,
     "light": LightLine,
+    "world": WorldLine,
+    "view": ViewLine,
     "camera": CameraLine,
 }
 """The type of each layout line by the name it is called by."""
@@ -53,12 +57,26 @@ _LISTS = {
     "opening": "openings",
     "proxy": "proxies",
     "light": "lights",
+    "world": "worlds",
+    "view": "views",
     "camera": "cameras",
 }
-_POSITIONAL = {"room": 0, "wall": 3, "door": 1, "window": 1, "opening": 1, "proxy": 2, "light": 2, "camera": 2}
+_POSITIONAL = {
+    "room": 0,
+    "wall": 3,
+    "door": 1,
+    "window": 1,
+    "opening": 1,
+    "proxy": 2,
+    "light": 2,
+    "world": 1,
+    "view": 1,
+    "camera": 2,
+}
 _FINE = {"matrix", "fov_y", "ortho_height"}
 # Fields that are printed only when they differ from their default; all others are always printed.
-_QUIET = {"partition", "parent", "label", "shape", "color", "target", "fov_y", "ortho_height", "principal"}
+_QUIET = {"partition", "parent", "label", "shape", "color", "target", "fov_y", "ortho_height", "principal",
+          "near", "size_y", "kelvin", "look", "ceiling", "cut"}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -97,8 +115,8 @@ def print_layout(layout: Layout) -> str:
         ("Doors, windows and openings", [*layout.doors, *layout.windows, *layout.openings]),
         ("Major objects", [*majors]),
         ("Minor objects", [*minors]),
-        ("Lights", [*layout.lights]),
-        ("Cameras", [*layout.cameras]),
+        ("Lights", [*layout.lights, *layout.worlds]),
+        ("Cameras", [*layout.cameras, *layout.views]),
     ]
     blocks = [
         "\n".join([f"# {title}", *(print_line(line) for line in lines)]) + "\n" for title, lines in sections if lines
@@ -112,10 +130,11 @@ def print_line(line: Line) -> str:
     pieces: list[str] = []
     for index, (key, field) in enumerate(type(line).model_fields.items()):
         value = getattr(line, key)
-        if key in _QUIET and value == field.default:
+        decimals = FINE_DECIMALS if key in _FINE else DECIMALS
+        if key in _QUIET and _rounded(value, decimals) == field.default:
             continue
         prefix = "" if index < _POSITIONAL[name] else f"{key}="
-        pieces.extend(_value_pieces(prefix, value, FINE_DECIMALS if key in _FINE else DECIMALS))
+        pieces.extend(_value_pieces(prefix, value, decimals))
         pieces[-1] += ","
     pieces[-1] = pieces[-1][:-1] + ")"
     return _fill(f"{name}(", pieces)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What names may mean: no unknown ones, no second meaning for the language's own, no function that calls itself."""
+"""What names may mean: no unknown ones, no second meaning for the language's own in the module, no recursion."""
 
 from __future__ import annotations
 
@@ -47,11 +47,13 @@ def check_names(names: Names, known: Known, complete: bool = True) -> list[Progr
     problems: list[ProgramError] = []
     own = known.own
     for name, line, scope in names.bindings:
+        if scope is not names.module:
+            continue  # inside a def or comprehension a name is its own, as in Python: nothing else can see it
         if name in own:
             problems.append(
-                ProgramError(f"{name} belongs to the room language and cannot be redefined", line, rename(name))
+                ProgramError(f"{name} belongs to the room language and cannot be redefined here", line, rename(name))
             )
-        elif name in known.reserved and scope is names.module:
+        elif name in known.reserved:
             problems.append(ProgramError(f"{name} belongs to Python and cannot be redefined here", line, rename(name)))
     for node, scope in names.uses:
         if node.id in own or scope.owner(node.id) is not None or not complete:
@@ -138,14 +140,20 @@ def check_lines(tree: ast.Module, names: Names, known: Known, allowed: bool) -> 
             elif isinstance(node, (ast.If, ast.For)):
                 open_blocks += [(node.body, False), (node.orelse, False)]
     problems = []
-    for part, _ in names.uses:
-        if part.id in known.lines:
+    for part, scope in names.uses:
+        if part.id in known.lines and not is_local(part.id, scope, names.module):
             message: tuple[str, str] | None = (f"{part.id} is a line of the room", "An object program only has defs.")
             if allowed:
                 message = line_problem(part.id, statements.get(part), known)
             if message:
                 problems.append(ProgramError(message[0], part.lineno, message[1]))
     return problems
+
+
+def is_local(name: str, scope: Scope, module: Scope) -> bool:
+    """Whether a name that is read in a scope means something that a def or comprehension calls so itself."""
+    owner = scope.owner(name)
+    return owner is not None and owner is not module
 
 
 def line_problem(name: str, place: tuple[ast.Call, bool] | None, known: Known) -> tuple[str, str] | None:

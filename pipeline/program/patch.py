@@ -11,6 +11,7 @@ from ..artifacts.analysis import Finding
 from ..artifacts.layout import Layout, LayoutEdit, ProxyLine, RoomLine
 from ..errors import ProgramError
 from .edits import LISTS, Edited, apply_edits, edit_layout
+from .finishes import finish_argument, finished
 from .limits import FINISHED_ROOM_LIMITS
 from .lines import Statement, called_name, layout_of, layout_statements, name_of, parse_layout, print_line, quoted
 from .parse_safe import parse
@@ -168,14 +169,14 @@ def _line_changes(source: _Source, statements: list[Statement], edited: Edited) 
 
 def _last_of_shell(statements: list[Statement]) -> ast.Expr:
     """The statement that the first object of a room without objects comes after."""
-    shell = [s for s in statements if s.name not in ("light", "camera", "proxy")]
+    shell = [s for s in statements if s.name not in ("light", "world", "view", "camera", "proxy")]
     return shell[-1].node
 
 
 def _furnish_changes(source: _Source, tree: ast.Module, edited: Edited) -> list[_Change]:
     renamed = {old: new for new, old in edited.origins.items() if old is not None and old != new}
     gone = edited.before - set(edited.origins.values())
-    changes = []
+    changes = _finish_changes(source, tree, renamed, gone | (set(edited.lines_before) - set(edited.lines)))
     for node in tree.body:
         if called_name(node) != "furnish" or not isinstance(node, ast.Expr) or not isinstance(node.value, ast.Call):
             continue
@@ -189,6 +190,18 @@ def _furnish_changes(source: _Source, tree: ast.Module, edited: Edited) -> list[
             changes.append(source.removed(node))
             message = "Its furnish statement was removed with it; its function, if it has one, was kept."
             edited.findings.append(Finding(about=argument.value, message=message))
+    return changes
+
+
+def _finish_changes(source: _Source, tree: ast.Module, renamed: dict[str, str], gone: set[str]) -> list[_Change]:
+    """Finishes follow a rename, and go with what they are for."""
+    changes = []
+    for node in tree.body:
+        name, argument = finished(node), finish_argument(node)
+        if name in renamed and argument is not None:
+            changes.append(source.replaced(argument, quoted(renamed[name])))
+        elif name in gone:
+            changes.append(source.removed(node))
     return changes
 
 

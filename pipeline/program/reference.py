@@ -13,6 +13,8 @@ from .prelude import palette, registry
 
 _COMMON = ("at", "seed", "segments", "rings", "axis", "smooth")
 """Parameters of constructors that the introduction speaks of, or that are best left alone."""
+_OF_ROOMS = frozenset({"floor", "wall", "partition", "ceiling", "section", "frame", "door", "marker"})
+"""Roles that only the room's own surfaces have."""
 LONGEST = 8192
 """Bytes of the reference in UTF-8."""
 
@@ -20,17 +22,17 @@ _INTRODUCTION = """\
 # Modelling language
 A subset of Python. One def per object returns a (nested) list of shapes.
 Frame: metres, origin at the centre of the object's base, +X its width, FRONT = -Y, +Z up. Fill the given (width, depth,
-height) box exactly and stand on z = 0.
-Expressions, slices, if, for, comprehensions, def with defaults, lambda, f-strings. NO imports, attributes
-or methods, while, try, classes, sets, recursion, names with a leading _. Names of the language cannot be rebound, not even
-locally. Also: keys(dict) values(dict) items(dict) abs min max round sum len range zip enumerate sorted reversed int float str
-bool list tuple any all; {math} (radians) pi tau.
+height) box and stand on z = 0.
+Expressions, slices, if, for, comprehensions, def with defaults, lambda, f-strings. NO imports, attributes or methods, while,
+try, classes, sets, *args, recursion, names with a leading _. Also: keys(dict) values(dict) items(dict) abs min max round sum
+len range zip enumerate sorted reversed int float str bool list tuple any all; {math} (radians) pi tau. A def that
+uses a function's name for a value of its own cannot call that function.
 Functions return new shapes; operations take one shape or a (nested) list. All that make something take at= (a solid's centre;
 default the origin), soft and random ones seed=, round ones segments=, {axial} axis= "x", "y" or "z".
 Every shape needs part(name, shapes, material=role). Roles: {roles}; "" is the object's own colour, "wood #8A5A3C" a colour of
 its own.
-Soften edges (rounded_box, edge=, bevel). Parts touch or overlap by 1-2 mm, nothing floats. Legs 30-60 mm thick, boards 18-40.
-At most 15 000 vertices; segments 12-16 for legs, 32-48 for what is large.
+Parts touch or overlap by 1-2 mm. Legs 30-60 mm thick, boards 18-40. At most 12 000 vertices; segments 12-16 for legs, 32-48
+for what is large.
 """
 
 _SECTIONS: tuple[tuple[str, tuple[str, ...]], ...] = (
@@ -61,9 +63,7 @@ def armchair_1(size=(0.8, 0.78, 0.85)):
 @functools.lru_cache(maxsize=1)
 def reference() -> str:
     """What a model has to know of the language to model an object: rules, every constructor, an example; at most 8 kB."""
-    roles = ", ".join(
-        name for name in palette.ROLE_COLOURS if name not in ("floor", "wall", "partition", "frame", "door", "marker")
-    )
+    roles = ", ".join(name for name in palette.ROLE_COLOURS if name not in _OF_ROOMS)
     axial = " ".join(
         name
         for name, f in registry.CONSTRUCTORS.items()

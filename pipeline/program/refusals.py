@@ -5,7 +5,9 @@ from __future__ import annotations
 
 import ast
 import difflib
-from collections.abc import Iterable, Sequence
+import inspect
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
 
 from ..errors import ProgramError
 
@@ -117,6 +119,18 @@ NAMES: dict[str, str] = {
     "iter": "Use a for loop.",
     "inf": "Use a large number such as 1e9.",
     "complex": "There are only real numbers.",
+    "rotate": "Write turn(shapes, degrees, axis).",
+    "translate": "Write move(shapes, (x, y, z)).",
+    "union": "Put the shapes into a list.",
+    "group": "Put the shapes into a list.",
+    "difference": "Write carve(shapes, cutters).",
+    "subtract": "Write carve(shapes, cutters).",
+    "intersection": "Shapes can be carved, but not intersected; make the shape that is meant.",
+    "cube": "Write box((width, depth, height)).",
+    "plane": "Write a thin box((width, depth, height)), or grid(...).",
+    "dist": "Write hypot(x2 - x1, y2 - y1).",
+    "copysign": "Write abs(x) if y >= 0 else -abs(x).",
+    "isclose": "Write abs(a - b) < 0.001.",
 }
 
 
@@ -159,10 +173,22 @@ def sentence(error: BaseException) -> str:
     return f"this cannot be evaluated ({type(error).__name__}: {text[:200]})"
 
 
-def located(error: Exception, line: int) -> ProgramError:
+def misfit(error: Exception, name: str, call: Callable[..., Any]) -> str:
+    """What a function of the language takes, when an error says that it was given something else; "" otherwise."""
+    if not isinstance(error, TypeError) or f"{getattr(call, '__name__', name)}() " not in str(error):
+        return ""
+    try:
+        parameters = list(inspect.signature(call).parameters.values())
+    except (TypeError, ValueError):
+        return ""
+    words = [p.name if p.default is p.empty else f"{p.name}=" for p in parameters if p.kind is p.POSITIONAL_OR_KEYWORD]
+    return f"Write {name}({', '.join(words)})." if words else ""
+
+
+def located(error: Exception, line: int, fix: str = "") -> ProgramError:
     """The error as a ProgramError that carries a line; an inner line is kept."""
     if isinstance(error, ProgramError):
         if not error.line:
             error.line = line
         return error
-    return ProgramError(sentence(error), line)
+    return ProgramError(sentence(error), line, fix)

@@ -79,24 +79,24 @@ class Reuse:
     closures: dict[str, str] = field(default_factory=dict)
     known: dict[str, list[Shape]] = field(default_factory=dict)
 
-    def furnish(self, plain: Callable[[Any, Any], None], size_of: Callable[[str], Any]) -> Callable[[Any, Any], None]:
+    def furnish(self, plain: Callable[[Any, Any, Any], None], size_of: Callable[[str], Any]) -> Callable[..., None]:
         """The room's `furnish`, which takes known shapes and keeps new ones.
 
         Args:
             plain: the recorder's own. size_of: the size of a proxy, None when its line does not stand above.
         """
 
-        def furnish(id: Any, shapes: Any) -> None:
+        def furnish(id: Any, shapes: Any, lying: Any = False) -> None:
             known = self.known.get(id) if isinstance(id, str) else None
             if known is not None:
                 spend_vertices(sum(shape.vertex_count for shape in known))
-                return plain(id, known)
+                return plain(id, known, lying)
             size = size_of(id) if isinstance(id, str) and callable(shapes) else None
             if size is not None:
                 shapes = flat_shapes("furnish", shapes(size))
                 if id in self.closures and shapes:
                     STORE.keep((self.closures[id], tuple(size)), shapes)
-            return plain(id, shapes)
+            return plain(id, shapes, lying)
 
         return furnish
 
@@ -215,7 +215,8 @@ class _Module:
             for number in span:
                 lines[number - 1] = ""
             if not isinstance(statement, ast.FunctionDef):
-                lines[statement.lineno - 1] = f"furnish({_identifier(statement)!r}, [])"
+                lying = ", lying=True" if _is_lying(statement) else ""
+                lines[statement.lineno - 1] = f"furnish({_identifier(statement)!r}, []{lying})"
         return "\n".join(lines)
 
 
@@ -226,7 +227,8 @@ def _read_call(
     first = call.args[0].value if call.args and isinstance(call.args[0], ast.Constant) else None
     if not isinstance(first, str):
         return
-    if name == "furnish" and len(call.args) == 2 and not call.keywords and isinstance(call.args[1], ast.Name):
+    plain = all(k.arg == "lying" and isinstance(k.value, ast.Constant) for k in call.keywords)
+    if name == "furnish" and len(call.args) == 2 and plain and isinstance(call.args[1], ast.Name):
         furnished[first] = (node, call.args[1].id)
     elif name == "proxy":
         for keyword in call.keywords:
@@ -234,6 +236,11 @@ def _read_call(
                 values = [v.value for v in keyword.value.elts if isinstance(v, ast.Constant)]
                 if len(values) == 3 and all(isinstance(v, int | float) for v in values):
                     sizes[first] = tuple(float(v) for v in values if isinstance(v, int | float))
+
+
+def _is_lying(statement: ast.stmt) -> bool:
+    assert isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Call)
+    return any(isinstance(k.value, ast.Constant) and k.value.value is True for k in statement.value.keywords)
 
 
 def _identifier(statement: ast.stmt) -> str:

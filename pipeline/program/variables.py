@@ -10,9 +10,16 @@ from ..errors import ProgramError
 from .values import UNSET, Code, Frame
 
 
-def unset(name: str) -> ProgramError:
-    """The refusal of a variable that is read before it is set."""
-    return ProgramError(f"{name} is used before it is set")
+def unset(name: str, ours: bool = False) -> ProgramError:
+    """The refusal of a variable that is read before it is set.
+
+    Args:
+        ours: whether the language has something of this name, which the def has taken for a variable of its own.
+    """
+    if not ours:
+        return ProgramError(f"{name} is used before it is set")
+    fix = f"Call the variable something else, such as {name}_1."
+    return ProgramError(f"this def uses {name} for a value of its own, so it cannot call the language's {name}", 0, fix)
 
 
 def load_parameter(slot: int) -> Code:
@@ -20,13 +27,13 @@ def load_parameter(slot: int) -> Code:
     return lambda f: f[slot]
 
 
-def load_local(slot: int, name: str) -> Code:
+def load_local(slot: int, name: str, ours: bool = False) -> Code:
     """A variable of this frame."""
 
     def run(f: Frame) -> Any:
         value = f[slot]
         if value is UNSET:
-            raise unset(name)
+            raise unset(name, ours)
         return value
 
     return run

@@ -13,7 +13,7 @@ from .limits import Meter
 from .names import Known
 from .values import Native, settle
 
-FREE_LINES = frozenset({"furnish", "build"})
+FREE_LINES = frozenset({"furnish", "finish", "build"})
 """Lines whose arguments may be computed; all other lines are layout lines."""
 STEPS: dict[str, int] = {"lerp": 4, "clamp": 4, "smoothstep": 4, "rand": 12, "noise": 12}
 """What a call of these constructors is counted as."""
@@ -67,4 +67,5 @@ def room_vocabulary() -> Vocabulary:
     """The room language as the prelude's registry defines it."""
     from .prelude import registry
 
-    return Vocabulary(registry.CONSTRUCTORS, registry.LINE_NAMES, registry.MATH, registry.CONSTANTS, registry.RESERVED)
+    functions = {**registry.CONSTRUCTORS, **registry.LOOKS}
+    return Vocabulary(functions, registry.LINE_NAMES, registry.MATH, registry.CONSTANTS, registry.RESERVED)

@@ -40,8 +40,8 @@ class MeshArrays:
     sharp: Any
 
 
-def mesh_arrays(shapes: list[Shape]) -> MeshArrays:
-    """The arrays of these shapes; any thread."""
+def mesh_arrays(shapes: list[Shape], unwrap: bool = True) -> MeshArrays:
+    """The arrays of these shapes; any thread. Without `unwrap` the UVs, which take longest, are all 0."""
     offsets = np.cumsum([0, *(len(s.vertices) for s in shapes)])
     points = np.concatenate([s.vertices for s in shapes]) if shapes else np.zeros((0, 3))
     roles = tuple(dict.fromkeys(shape.material for shape in shapes if shape.faces))
@@ -67,7 +67,12 @@ def mesh_arrays(shapes: list[Shape]) -> MeshArrays:
         parts=np.repeat([names.index(s.part) for s in shapes], counts).astype(np.int32),
         roles=roles,
         part_names=names,
-        uvs=np.concatenate([np.zeros((0, 2)), *map(corner_uvs, shapes)]).astype(np.float32),
+        uvs=np.concatenate(
+            [
+                np.zeros((0, 2)),
+                *(corner_uvs(s) if unwrap else np.zeros((len(c), 2)) for s, (c, _) in zip(shapes, flat, strict=True)),
+            ]
+        ).astype(np.float32),
         sharp=np.concatenate([np.zeros((0, 2), dtype=np.int64), *sharp]).astype(np.int32),
     )
 

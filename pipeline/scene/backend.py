@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import bpy
 
+from ..artifacts.assets import AssetRef, ChosenAsset
 from ..artifacts.camera import CameraModel
 from ..artifacts.layout import LayoutEdit
 from ..artifacts.scene import SceneDocument
@@ -17,6 +18,7 @@ from ..errors import SceneError
 from ..program.assemble import room_part
 from ..program.prelude.shape import Shape
 from .adopt import adopt
+from .assets import dress, follow, prepare, undress
 from .capture import capture, eye_view
 from .document import scene_document
 from .holding import forget_aside
@@ -62,13 +64,16 @@ class BlenderScene:
         """
         room = self._ensure_room()
         _leave_edit_mode(room)
+        follow(room, plan.room)
         try:
             realise_plan(plan.room, COLLECTION, self.scene, made)
         except Exception:
             # Objects and text agree whatever happens: what stood before stands again.
             former = self.program_text()
             if former and former != plan.text:
-                realise_plan(plan_build(former, meshes=False).room, COLLECTION, self.scene, {})
+                before = plan_build(former, meshes=False).room
+                follow(room, before)
+                realise_plan(before, COLLECTION, self.scene, {})
             raise
         self._tell(*plan.room.notes)
         self._tell(write_text(room, PROGRAM, plan.full_text))
@@ -90,6 +95,20 @@ class BlenderScene:
         except SceneError as error:
             self._tell(f"The model could not be shown its objects: {error.message}")
             return b""
+
+    def prepare_asset(self, ref: AssetRef, file: Path | None) -> tuple[float, float, float]:
+        """As `Wardrobe.prepare_asset`."""
+        size, notes = prepare(ref, file)
+        self._tell(*(f"{ref.name}: {note}." for note in notes))
+        return size
+
+    def dress(self, chosen: Sequence[ChosenAsset], files: Mapping[str, Path]) -> dict[str, str]:
+        """As `Wardrobe.dress`."""
+        return dress(self._ensure_room(), chosen, files)
+
+    def undress(self, ids: Collection[str]) -> list[str]:
+        """As `Wardrobe.undress`."""
+        return undress(self._ensure_room(), ids)
 
     def read_back(self) -> list[LayoutEdit]:
         """As `SceneBackend.read_back`. What was copied, added or renamed gets its id on the object."""

@@ -13,7 +13,7 @@ import numpy as np
 
 from .measure import Box, affine_between, box_points, matrix_yaw, measure, mesh_points
 from .meshes import mesh_fingerprint
-from .tags import FIELD, GROUP, ID, world_matrix
+from .tags import ASSET, FIELD, GROUP, ID, world_matrix
 
 SEEN_MESH = FIELD + "seen_mesh"  # on an object: fingerprint of its mesh when it was built
 INNER = FIELD + "inner"  # size of a furnished proxy's box in its mesh's metres
@@ -40,7 +40,7 @@ def object_box(obj: Any) -> Box | None:
     frame = own_frame(obj, edited)
     yaw = matrix_yaw(matrix @ frame)
     size = obj.get(INNER) or list(obj.get(FIELD + "box", ()))[3:6]
-    if obj.get(FIELD + "furnished") and len(size) == 3:
+    if (obj.get(FIELD + "furnished") or ASSET in obj.data) and len(size) == 3:
         turned = not np.array_equal(frame, stored_frame(obj))
         if not edited or turned or _fills_the_same(obj):
             return measure(box_points(size), matrix @ frame, yaw)

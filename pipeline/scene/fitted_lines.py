@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..artifacts.layout import CameraLine, LightLine, WallLine
+from ..program.prelude.kelvin import light_colour
 from .holding import SEEN_LOCAL, local_matrix
 from .measure import matrix_yaw, turn_between
 from .tags import world_matrix
@@ -89,7 +90,11 @@ def light_line(line: LightLine, obj: Any) -> LightLine | None:
         values = {"at": now.at, "target": None if straight else tuple(float(v) for v in at + direction * reach)}
         if now.kind == "point" and line.target is None:
             values["target"] = None
-    for name in ("kind", "energy", "color", "size"):
+    if now.kind == "area" and not _near(now.size_y or now.size, max(line.size_y or line.size, 1e-3)):
+        values["size_y"] = now.size_y
+    if not _near(now.color, light_colour(line.color, line.kelvin)):
+        values |= {"color": now.color, "kelvin": 0.0}
+    for name in ("kind", "energy", "size"):
         given = getattr(line, name)
         floor = 1e-3 if name == "size" and line.kind == "area" else 0.0
         if not _near(getattr(now, name), max(given, floor) if floor else given):
@@ -106,6 +111,7 @@ def new_light_line(identifier: str, obj: Any) -> LightLine:
     kind: Any = data.type.lower()
     size = {"sun": "angle", "area": "size"}.get(kind, "shadow_soft_size")
     scale = float(np.linalg.norm(np.array(matrix, dtype=float)[:3, 0])) if kind == "area" else 1.0
+    tall = float(np.linalg.norm(np.array(matrix, dtype=float)[:3, 1])) if kind == "area" else 1.0
     down = direction[2] < -1 + 1e-6 or kind == "point"
     return LightLine(
         id=identifier,
@@ -114,6 +120,7 @@ def new_light_line(identifier: str, obj: Any) -> LightLine:
         energy=float(data.energy),
         color=(float(data.color[0]), float(data.color[1]), float(data.color[2])),
         size=float(getattr(data, size)) * scale,
+        size_y=float(data.size_y) * tall if kind == "area" and data.shape in ("RECTANGLE", "ELLIPSE") else 0.0,
         target=None if down else tuple(a + d for a, d in zip(at, direction, strict=True)),
     )
 

@@ -15,6 +15,7 @@ from typing import Any
 import bpy
 import numpy as np
 
+from ..program.prelude.palette import FAMILY_COLOURS
 from .boxes import (
     BOUNDS,
     FRAME,
@@ -31,14 +32,29 @@ from .boxes import (
 from .materials import ensure_material
 from .measure import EXACT, fit_box
 from .meshes import is_hand_made, mesh_fingerprint
-from .tags import AWAY, BUILT_IDS, BUILT_LINES, COLOUR, COPIED, DIGEST, FIELD, GROUP, HELD, ID, LINE, PART, world_matrix
+from .tags import (
+    ASSET,
+    AWAY,
+    BUILT_IDS,
+    BUILT_LINES,
+    COLOUR,
+    COPIED,
+    DIGEST,
+    FIELD,
+    GROUP,
+    HELD,
+    ID,
+    LINE,
+    PART,
+    world_matrix,
+)
 from .targets import Target, shapes_digest
 
 SEEN = FIELD + "seen"  # on an object: its matrix in the room when it was built, 16 numbers
 SEEN_LOCAL = FIELD + "seen_local"  # the same below its parent
 SEEN_PARENT = FIELD + "seen_parent"  # id of its parent in Blender, "" for none
 LOOK = FIELD + "look"  # what its mesh was made from, whatever its size and its colour
-_GROUPS = ("walls", "doors", "windows", "openings", "proxies", "lights", "cameras")
+_GROUPS = ("walls", "doors", "windows", "openings", "proxies", "lights", "worlds", "views", "cameras")
 
 
 # ---- remembering ----
@@ -66,6 +82,11 @@ def remember(obj: Any, target: Target, held: bool) -> None:
         del obj[FRAME]
     if not held or INNER not in obj:
         obj[INNER] = [float(v) for v in target.line["size"]]
+    remember_mesh(obj)
+
+
+def remember_mesh(obj: Any) -> None:
+    """Keep what an object's mesh is now: it is none that the artist edited."""
     obj[SEEN_MESH] = mesh_fingerprint(obj.data)
     obj[BOUNDS] = mesh_bounds(obj.data)
     obj[SAMPLE] = [float(v) for v in sampled(obj.data).ravel()]
@@ -117,7 +138,7 @@ def held_matrix(obj: Any, target: Target) -> Any | None:
         if ours and not is_hand_made(obj.data) and FRAME not in obj and _is_plain(now):
             return None  # what a build makes of its line is just this
     if ours:
-        _recolour(obj.data, target.family)
+        _recolour(obj, target.family)
     return wanted
 
 
@@ -142,18 +163,21 @@ def _shines_the_same(first: Any, second: Any) -> bool:
 
 def _look(target: Target) -> str:
     if target.fields.get("furnished"):
-        return shapes_digest(target.shapes, "")
+        # A cloth that lies a little differently, since what carries it moved, is still the same cloth.
+        return shapes_digest(target.shapes if target.plain is None else target.plain, "")
     return str(target.line.get("shape", "box"))
 
 
-def _recolour(mesh: Any, family: str) -> None:
+def _recolour(obj: Any, family: str) -> None:
     """Give our own materials the colours of another family of categories; the artist's materials stay."""
-    for index, material in enumerate(mesh.materials):
+    for index, material in enumerate(list(obj.data.materials)):
         former, _, role = str(material.get(COLOUR, "")).partition("/") if material is not None else ("", "", "")
-        if former and "/" in str(material[COLOUR]) and former != family:
+        if former in FAMILY_COLOURS and "/" in str(material[COLOUR]) and former != family:
             wanted = ensure_material(family, role or "body")
             if wanted != material:
-                mesh.materials[index] = wanted
+                if obj.data.users > 1:  # the others stay what they are
+                    obj.data = obj.data.copy()
+                obj.data.materials[index] = wanted
 
 
 # ---- setting aside ----
@@ -162,6 +186,8 @@ def _recolour(mesh: Any, family: str) -> None:
 def is_artists(obj: Any) -> bool:
     """Whether there is more to an object than its line says: it is held, or has something that only an artist adds."""
     if HELD in obj or obj.get(GROUP) or len(obj.modifiers) or len(obj.constraints) or obj.animation_data is not None:
+        return True
+    if obj.type == "MESH" and ASSET in obj.data:
         return True
     return any(slot.material is not None and COLOUR not in slot.material for slot in obj.material_slots)
 

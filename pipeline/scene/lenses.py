@@ -6,6 +6,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from ..program.prelude.kelvin import light_colour
+
 
 def write_camera(data: Any, line: dict[str, Any]) -> None:
     """Give a Blender camera the lens of a camera line (fields as `CameraModel`, `principal` as a pair).
@@ -19,7 +21,7 @@ def write_camera(data: Any, line: dict[str, Any]) -> None:
     data.sensor_fit = "VERTICAL"
     data.shift_x = (500.0 - x) / 1000.0 * width / height
     data.shift_y = (y - 500.0) / 1000.0
-    data.clip_start, data.clip_end = 0.02, 500.0
+    data.clip_start, data.clip_end = line.get("near", 0.02), 500.0
     if line["kind"] == "orthographic":
         data.type = "ORTHO"
         data.ortho_scale = line["ortho_height"]
@@ -29,16 +31,22 @@ def write_camera(data: Any, line: dict[str, Any]) -> None:
 
 
 def write_light(data: Any, line: dict[str, Any]) -> None:
-    """Give a Blender light the values of a light line; `size` is a sun's angular diameter in radians, else metres."""
+    """Give a Blender light the values of a light line; `size` is a sun's angular diameter in radians, else metres.
+
+    Colours above 1 are kept by the energy: Blender's colour field shows them, but its picker does not.
+    """
     kind = line["kind"].upper()
     if data.type != kind:
         data.type = kind
         data = data.type_recast()  # the fields of the new kind appear only on a new Python type
     data.energy = line["energy"]
-    data.color = line["color"]
+    data.color = light_colour(line["color"], line["kelvin"])
     if kind == "SUN":
         data.angle = min(line["size"], math.pi)
     elif kind == "AREA":
         data.size = max(line["size"], 1e-3)
+        data.shape = "RECTANGLE" if line["size_y"] else "SQUARE"
+        if line["size_y"]:
+            data.size_y = max(line["size_y"], 1e-3)
     else:
         data.shadow_soft_size = line["size"]

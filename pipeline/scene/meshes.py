@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from ..program.prelude.looks import Look
 from .arrays import MeshArrays
-from .materials import ensure_material
+from .slots import artists_slots, put_artists_slots, write_slots
 from .tags import DIGEST, FINGERPRINT
 
 
@@ -33,12 +34,15 @@ def is_hand_made(mesh: Any) -> bool:
     return bool(mesh.get(FINGERPRINT) != mesh_fingerprint(mesh))
 
 
-def write_arrays(mesh: Any, arrays: MeshArrays, family: str, digest: str) -> None:
-    """Replace the mesh's geometry and material slots by these arrays; the datablock stays the same."""
+def write_arrays(mesh: Any, arrays: MeshArrays, family: str, digest: str, looks: dict[str, Look] | None = None) -> None:
+    """Replace the mesh's geometry and material slots by these arrays; the datablock stays the same.
+
+    A material that the artist put into a slot stays with the role that the slot was for. `looks`: those of finishes, by key.
+    """
+    own = artists_slots(mesh)
     mesh.clear_geometry()
-    mesh.materials.clear()
-    for role in arrays.roles:
-        mesh.materials.append(ensure_material(family, role))
+    write_slots(mesh, arrays.roles, family, looks or {})
+    put_artists_slots(mesh, own)
     _write_geometry(mesh, arrays)
     if mesh.polygons:
         _write(mesh, "material_index", "INT", "FACE", arrays.slots)

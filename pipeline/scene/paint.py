@@ -59,16 +59,21 @@ def _paint(mesh: Any, rotation: Any) -> None:
     count = len(mesh.polygons)
     if not count:
         return
-    normals = np.empty(3 * count, dtype=np.float32)
-    slots, totals = np.empty(count, dtype=np.int32), np.empty(count, dtype=np.int32)
-    mesh.polygons.foreach_get("normal", normals)
+    slots = np.empty(count, dtype=np.int32)
     mesh.polygons.foreach_get("material_index", slots)
-    mesh.polygons.foreach_get("loop_total", totals)
     palette = [m.diffuse_color[:3] if m is not None else _DEFAULT_COLOUR for m in mesh.materials] or [_DEFAULT_COLOUR]
+    paint_faces(mesh, np.array(palette)[np.clip(slots, 0, len(palette) - 1)], rotation)
+
+
+def paint_faces(mesh: Any, colours: Any, rotation: Any) -> None:
+    """Give each face its linear colour (faces, 3), shaded by where it faces in the room, as the active colour attribute."""
+    count = len(mesh.polygons)
+    normals, totals = np.empty(3 * count, dtype=np.float32), np.empty(count, dtype=np.int32)
+    mesh.polygons.foreach_get("normal", normals)
+    mesh.polygons.foreach_get("loop_total", totals)
     facing = normals.reshape(-1, 3) @ np.linalg.pinv(rotation)  # normals turn by the inverse transpose
     facing /= np.maximum(np.linalg.norm(facing, axis=1, keepdims=True), 1e-9)
-    colours = np.array(palette)[np.clip(slots, 0, len(palette) - 1)] * _shade(facing)[:, None]
-    rgba = np.concatenate([colours, np.ones((count, 1))], axis=1).astype(np.float32)
+    rgba = np.concatenate([colours * _shade(facing)[:, None], np.ones((count, 1))], axis=1).astype(np.float32)
     attribute = mesh.color_attributes.new(_SHADE, "FLOAT_COLOR", "CORNER")
     attribute.data.foreach_set("color", np.repeat(rgba, totals, axis=0).ravel())
     mesh.color_attributes.active_color = attribute

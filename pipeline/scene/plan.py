@@ -53,7 +53,7 @@ def line_ids(text: str) -> frozenset[str]:
     """The ids of all layout lines of a program. Raises ProgramError as `parse_layout`."""
     layout = parse_layout(text)
     lines = (layout.walls, layout.doors, layout.windows, layout.openings, layout.proxies, layout.lights)
-    return frozenset(line.id for group in (*lines, layout.cameras) for line in group)
+    return frozenset(line.id for group in (*lines, layout.worlds, layout.views, layout.cameras) for line in group)
 
 
 def warm_up() -> None:

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from ..artifacts.analysis import Finding
-from ..artifacts.layout import DoorLine, Layout, LayoutEdit, WallLine
+from ..artifacts.layout import DoorLine, Layout, LayoutEdit, LightLine, WallLine
 from ..errors import ProgramError
 from ..program.lines import parse_line, print_line, rounded_line
 from ..program.prelude.walls import wall_runs
@@ -148,10 +148,10 @@ class _Reader:
         new = self._line_now(line, obj, built)
         if new is None:
             return
-        follows = followed(obj) and not isinstance(line, WallLine) and obj.type == "MESH"
+        follows = followed(obj) and not isinstance(line, WallLine) and obj.type in ("MESH", "LIGHT")
         edit = self._edit("line", line.id, new, "changed by hand")
         if edit is not None and follows:
-            reason = f"moved along with {line.wall}"
+            reason = f"moved along with {line.parent if isinstance(line, LightLine) else line.wall}"
             edit = edit.model_copy(update={"origin": "parent", "reason": reason})
         elif edit is not None:
             self.read.held.append(obj)

@@ -33,9 +33,13 @@ from .holding import (
     set_aside,
 )
 from .lenses import write_camera, write_light
+from .lighting import dress_light, light_scene
 from .measure import EXACT, fit_matrix
 from .meshes import is_hand_made, write_arrays
+from .sharing import dress_own, may_share, shared_mesh, use_mesh
+from .slots import artists_slots, put_artists_slots
 from .tags import (
+    ASSET,
     AWAY,
     DIGEST,
     FIELD,
@@ -45,6 +49,7 @@ from .tags import (
     LINE,
     NAME,
     PART,
+    ROLE,
     WAS,
     ensure_collections,
     tagged_objects,
@@ -99,6 +104,7 @@ def realise_plan(plan: Plan, collection_name: str, scene: Any, made: dict[tuple[
         if not target.key[1]:
             done[target.key[0]] = obj
     remember_record(room, plan.record, set(done))
+    light_scene(scene, room, plan.record)
     if scene.camera is None:
         scene.camera = next((done[line["id"]] for line in plan.record.cameras if line["id"] in done), None)
     for layer in scene.view_layers:
@@ -109,20 +115,29 @@ def lacking(plan: Plan, room: Any) -> list[Target]:
     """The targets whose meshes would have to be written to show a plan, as things stand; nothing is changed."""
     existing = tagged_objects(room) if room is not None else {}
     aside = away(room) if room is not None else {}
-    found = []
+    found: list[Target] = []
+    once: set[str] = set()
     for target in plan.targets:
-        obj = existing.get(target.key, [aside.get(target.key)])[0]
-        if _has_mesh(target) and (
-            obj is None or (HELD not in obj and _lacks(obj, target, plan.digests[target.key][1]))
-        ):
-            found.append(target)
+        obj, digest = existing.get(target.key, [aside.get(target.key)])[0], plan.digests[target.key][1]
+        if not _has_mesh(target) or not (obj is None or (HELD not in obj and _lacks(obj, target, digest))):
+            continue
+        if may_share(target):  # the next ones take the mesh of the first
+            if digest in once or (room is not None and shared_mesh(target, digest, layout_of(room)) is not None):
+                continue
+            once.add(digest)
+        found.append(target)
     return found
+
+
+def layout_of(room: Any) -> Any:
+    """The collection that holds the room's furniture; the room's own where it is missing."""
+    return next((c for c in room.children_recursive if c.get(ROLE) == "layout"), room)
 
 
 def new_mesh(target: Target, plan: Plan) -> Any:
     """A mesh for a target that no object uses yet."""
     mesh = bpy.data.meshes.new(_name(target))
-    write_arrays(mesh, plan.mesh(target), target.family, plan.digests[target.key][1])
+    write_arrays(mesh, plan.mesh(target), target.family, plan.digests[target.key][1], plan.looks)
     return mesh
 
 
@@ -135,14 +150,17 @@ def _realise(
     if is_same and target.kind != "proxy" and obj.parent == parent:
         return obj
     if obj is None:
-        obj = _new_object(target, collection, made.pop(target.key, None))
+        mesh = made.pop(target.key, None) or shared_mesh(target, shapes, collection)
+        obj = _new_object(target, collection, mesh)
     matrix = held_matrix(obj, target)
     held = matrix is not None or (target.kind == "proxy" and is_pending(obj))
     if target.kind in ("light", "camera"):
         (write_light if target.kind == "light" else write_camera)(obj.data, target.line)
         matrix = target.matrix if matrix is None else matrix
     elif matrix is None:
-        matrix = _update_mesh(target, plan, obj, shapes, made)
+        matrix = _update_mesh(target, plan, obj, shapes, made, collection)
+    elif target.kind == "proxy" and obj.type == "MESH" and not is_same:
+        dress_own(obj, target)
     _place(obj, matrix, kept_parent(obj, parent), _CAMERA_TOLERANCE if target.kind == "camera" else EXACT)
     if not is_same:
         _write_fields(obj, target, digest)
@@ -174,6 +192,8 @@ def _new_object(target: Target, collection: Any, mesh: Any) -> Any:
     if target.key[1]:
         obj[PART] = target.key[1]
     obj[NAME] = obj.name
+    if target.kind == "light":
+        dress_light(obj)
     collection.objects.link(obj)
     return obj
 
@@ -198,7 +218,9 @@ def _lacks(obj: Any, target: Target, digest: str) -> bool:
     return not (len(mesh.vertices) and target.kind == "proxy")
 
 
-def _update_mesh(target: Target, plan: Plan, obj: Any, digest: str, made: dict[tuple[str, str], Any]) -> Any:
+def _update_mesh(
+    target: Target, plan: Plan, obj: Any, digest: str, made: dict[tuple[str, str], Any], collection: Any
+) -> Any:
     """Bring the object's mesh up to date; returns the matrix that the object should have with it.
 
     A mesh that the artist made is kept. Its object is fitted to the line's box when it does not fill it.
@@ -206,21 +228,33 @@ def _update_mesh(target: Target, plan: Plan, obj: Any, digest: str, made: dict[t
     if obj.type != "MESH":
         return world_matrix(obj)
     mesh = obj.data
+    if ASSET in mesh:  # the artist's asset, which was fitted to the line's box before
+        return target.matrix
     if _lacks(obj, target, digest):
         if target.key in made:
             _exchange(obj, made.pop(target.key))
             return target.matrix
-        if mesh.users > 1:  # an artist's linked copy shares it and must not change with it
+        shared = shared_mesh(target, digest, collection, mesh)
+        if shared is not None:
+            use_mesh(obj, shared)
+            return target.matrix
+        if mesh.users > 1:  # what shares it must not change with it
+            own = artists_slots(mesh)
             obj.data = mesh = bpy.data.meshes.new(obj.name)
-        write_arrays(mesh, plan.mesh(target), target.family, digest)
+            write_arrays(mesh, plan.mesh(target), target.family, digest, plan.looks)
+            put_artists_slots(mesh, own)
+        else:
+            write_arrays(mesh, plan.mesh(target), target.family, digest, plan.looks)
     elif target.kind == "proxy" and len(mesh.vertices) and (mesh.get(DIGEST) is None or is_hand_made(mesh)):
-        return fit_matrix(mesh, world_matrix(obj), target.line)
+        dress_own(obj, target)
+        return fit_matrix(obj.data, world_matrix(obj), target.line)
     return target.matrix
 
 
 def _exchange(obj: Any, mesh: Any) -> None:
     """Give the object a mesh that was made beforehand; the former one goes, and its name stays."""
     former = obj.data
+    put_artists_slots(mesh, artists_slots(former))
     obj.data = mesh
     if former.users == 0:
         name = former.name

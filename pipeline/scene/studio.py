@@ -16,6 +16,7 @@ import bpy
 import numpy as np
 
 from ..artifacts.camera import CameraModel
+from ..program.prelude.enclosure import CEILING, SECTION
 from .compat import ensure_node_tree, set_png
 from .lenses import write_camera
 from .paint import glowing_material, painted_copy
@@ -44,7 +45,7 @@ def studio(objects: Iterable[Any], camera: CameraModel, long_side: int, fine: bo
         shown = list(objects)
         walls = [obj for obj in shown if obj.get(KIND) == "wall"]
         for obj in shown:
-            in_front = _stands_before(obj, camera, walls)
+            in_front = stands_before(obj, camera, walls)
             if not in_front or obj.get(KIND) in ("wall", "door"):
                 scene.collection.objects.link(painted_copy(obj, made, KERB if in_front else None))
         yield scene
@@ -132,7 +133,7 @@ def wall_inward(wall: Any) -> tuple[Any, Any] | None:
     return matrix[:3, 3], normal / max(float(np.linalg.norm(normal)), 1e-9)
 
 
-def _stands_before(obj: Any, camera: CameraModel, walls: list[Any]) -> bool:
+def stands_before(obj: Any, camera: CameraModel, walls: list[Any]) -> bool:
     """Whether an outer wall, or the wall that a fitting or a wall object belongs to, turns its back to the camera."""
     face = wall_inward(_wall_of(obj, walls))
     if face is None:
@@ -170,7 +171,11 @@ def _nearest_wall(obj: Any, walls: list[Any]) -> Any | None:
 
 def visible_objects(room: Any) -> list[Any]:
     """What a picture of the room shows: every mesh of the collection that is not hidden from renders."""
-    return [obj for obj in room.all_objects if obj.type == "MESH" and not obj.hide_render]
+    return [
+        obj
+        for obj in room.all_objects
+        if obj.type == "MESH" and not obj.hide_render and obj.get(KIND) not in (CEILING, SECTION)
+    ]
 
 
 def proxies_of(room: Any) -> list[Any]:

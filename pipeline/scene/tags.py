@@ -22,7 +22,9 @@ HELD = "code_as_room_held"  # on what the artist edited, copied, added or locked
 GROUP = "code_as_room_group"  # on an object of the artist whose parts (its untagged children) count with it
 AWAY = "code_as_room_away"  # on what a build set aside (see `holding`); on the collection it is kept in: its room
 COPIED = "code_as_room_copied"  # id of the line whose object the artist copied, until the program knows the copy
+SLOTS = "code_as_room_slots"  # on meshes: role and key of the material of each slot, as they were written
 DIGEST = "code_as_room_digest"  # on meshes: digest of the shapes that they were made from
+ASSET = "code_as_room_asset"  # on meshes: key of the asset of the artist's that it is (see `assets`)
 FINGERPRINT = "code_as_room_fingerprint"  # on meshes: digest of the mesh as it stood after it was made
 
 SUB_COLLECTIONS = {"shell": "Room Shell", "layout": "Room Layout", "lights": "Room Lights", "cameras": "Room Cameras"}

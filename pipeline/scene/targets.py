@@ -5,11 +5,14 @@ from __future__ import annotations
 
 import hashlib
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
+from ..program.prelude.dressing import dressed, finish_notes, shell_finishes
+from ..program.prelude.enclosure import enclosure_pieces
+from ..program.prelude.looks import Look
 from ..program.prelude.palette import category_family
 from ..program.prelude.proxies import proxy_shapes
 from ..program.prelude.record import Record
@@ -29,6 +32,8 @@ class Target:
         matrix: object-to-room matrix.
         parent: id of what it follows, or None.
         fields: plain values that are kept on the object, so that the scene can be read without the program.
+        finishes: what the program says of its materials, the first counting most.
+        plain: the shapes of a cloth before it was laid onto what carries it, None for all else.
     """
 
     key: tuple[str, str]
@@ -40,6 +45,12 @@ class Target:
     parent: str | None = None
     line: dict[str, Any] = field(default_factory=dict)
     fields: dict[str, Any] = field(default_factory=dict)
+    finishes: tuple[dict[str, Look], ...] = ()
+    plain: list[Shape] | None = None
+
+    def dressed(self) -> list[Shape]:
+        """Its shapes with the looks of its finishes behind their material roles."""
+        return dressed(self.shapes, *self.finishes)
 
 
 @dataclass
@@ -50,7 +61,8 @@ class Plan:
         targets: every parent before its children.
         digests: of everything that a target asks for, and of its shapes, by the target's key.
         record: what the plan was made from.
-        notes: a plain sentence for each number of the shell that had to be clamped.
+        notes: a plain sentence for each number of the shell that had to be clamped, and each finish of nothing.
+        looks: every look that a finish names, by its key.
         arrays: meshes that were worked out already, by the digest of their shapes.
     """
 
@@ -59,24 +71,40 @@ class Plan:
     record: Record
     notes: list[str]
     arrays: dict[str, MeshArrays] = field(default_factory=dict)
+    looks: dict[str, Look] = field(default_factory=dict)
 
     def mesh(self, target: Target) -> MeshArrays:
         """The mesh of a target."""
         digest = self.digests[target.key][1]
         found = self.arrays.get(digest)
         if found is None:
-            found = self.arrays[digest] = mesh_arrays(target.shapes)
+            found = self.arrays[digest] = mesh_arrays(target.dressed())
         return found
 
 
 def plan_record(record: Record) -> Plan:
     """Everything about building a record that can be worked out without Blender."""
     targets, notes = record_targets(record)
+    targets = [_finished(target, record, notes) for target in targets]
     digests = {}
     for target in targets:
-        shapes = shapes_digest(target.shapes, target.family)
+        shapes = shapes_digest(target.dressed(), target.family)
         digests[target.key] = (target_digest(target, shapes), shapes)
-    return Plan(parents_first(targets), digests, record, notes)
+    looks = {look.key: look for finish in record.finishes.values() for look in finish.values()}
+    return Plan(parents_first(targets), digests, record, notes, looks=looks)
+
+
+def _finished(target: Target, record: Record, notes: list[str]) -> Target:
+    """The target with the finishes that are meant for it; what they name in vain is noted."""
+    if not record.finishes or not target.shapes:
+        return target
+    if target.kind == "proxy":
+        finish = record.finishes.get(target.key[0])
+        if finish is None or target.key[0] not in record.furnished:
+            return target
+        notes += finish_notes(target.key[0], finish, target.shapes)
+        return replace(target, finishes=(finish,))
+    return replace(target, finishes=tuple(shell_finishes(record, target.kind, target.key[0])))
 
 
 def record_targets(record: Record) -> tuple[list[Target], list[str]]:
@@ -95,12 +123,20 @@ def record_targets(record: Record) -> tuple[list[Target], list[str]]:
             Target((piece.id, piece.part), piece.kind, "shell", matrix, piece.shapes, "", piece.parent,
                    lines.get(piece.id, {}), fields)
         )  # fmt: skip
-    targets += [_proxy_target(line, record.furnished.get(line["id"])) for line in record.proxies]
+    for line in record.proxies:
+        target = _proxy_target(line, record.furnished.get(line["id"]))
+        targets.append(replace(target, plain=record.plain.get(line["id"])))
     for light in record.lights:
-        targets.append(Target((light["id"], ""), "light", "lights", aimed(light["at"], light["target"]), line=light))
+        matrix = aimed(light["at"], light["target"])
+        targets.append(Target((light["id"], ""), "light", "lights", matrix, parent=light["parent"], line=light))
     for camera in record.cameras:
         rows = np.array(camera["matrix"], dtype=float).reshape(4, 4)
         targets.append(Target((camera["id"], ""), "camera", "cameras", rows, line=camera))
+    taken = {target.key for target in targets}
+    for piece in enclosure_pieces(record):
+        if (piece.id, "") not in taken:
+            matrix = placed(piece.origin, piece.yaw)
+            targets.append(Target((piece.id, ""), piece.kind, "shell", matrix, piece.shapes))
     return targets, notes
 
 

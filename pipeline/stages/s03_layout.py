@@ -13,6 +13,7 @@ from typing import Any
 from ..artifacts.analysis import Calibration, Finding, SceneAnalysis
 from ..artifacts.graph import SceneGraph
 from ..artifacts.layout import Iteration, Layout, LayoutEdit, LayoutProgram, Score
+from ..artifacts.objects import Furnishing
 from ..artifacts.replies import CritiqueReply
 from ..errors import RoomError
 from ..layout.hand import apply_hand_edits, name_now, place_edited
@@ -28,6 +29,7 @@ from ..layout.solve import Ties, solve
 from ..layout.spread import placement_spread
 from ..program.lines import parse_layout, print_layout
 from .base import Reads, Stage, View
+from .carrying import FURNISHING, furnished
 from .wishes import Ask, Build, Picture, Render, Request, StageRun, Tell, Wish
 
 ID = "s03_layout"
@@ -239,8 +241,11 @@ def run(view: View) -> StageRun:
     fronted = frozenset(o.id for o in analysis.objects if o.front)
     loop = _Loop(view, calibration, graph, _rounds(view), target, frozen, chosen, swings, fronted)
     best = yield from loop.run(layout, evidence)
+    text = furnished(view, best.layout)
+    if text != print_layout(best.layout):
+        yield Build(text)
     program = LayoutProgram(
-        text=print_layout(best.layout),
+        text=text,
         stage=ID,
         score=best.score,
         best=best.number,
@@ -284,7 +289,7 @@ def _kept(view: View, layout: Layout) -> LayoutProgram:
     before = view.recall(LayoutProgram)
     assert before is not None
     message = "Nothing that was chosen is placed by this stage; it was left as it is."
-    update = {"text": print_layout(layout), "findings": [Finding(about="layout", message=message)]}
+    update = {"text": furnished(view, layout), "findings": [Finding(about="layout", message=message)]}
     return before.model_copy(update={**update, "hand_edits": len(view.hand_edits)})
 
 
@@ -306,5 +311,5 @@ STAGE = Stage(
     settings=("iterations", "target", "rounds", "memory"),
     notes=True,
     partial=True,
-    recalls=(Reads(LayoutProgram, (ID,)),),
+    recalls=(Reads(LayoutProgram, (ID,)), Reads(Furnishing, FURNISHING)),
 )

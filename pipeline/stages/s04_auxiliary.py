@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from ..analysis.look import numbered_boxes
 from ..artifacts.analysis import Calibration, DetectedObject, Finding, SceneAnalysis
 from ..artifacts.layout import Layout, LayoutEdit, LayoutProgram, LedgerEntry, ProxyLine
+from ..artifacts.objects import Furnishing
 from ..artifacts.replies import AuxiliaryPlacementReply, AuxiliaryReply
 from ..errors import RoomError
 from ..layout import auxiliary as place
@@ -16,8 +17,9 @@ from ..layout.initial import is_major
 from ..layout.pins import pinned, with_known_parent
 from ..layout.score import with_support
 from ..layout.solve import settle_minor
-from ..program.lines import parse_layout, print_layout
+from ..program.lines import parse_layout
 from .base import Reads, Stage, View
+from .carrying import FURNISHING, furnished
 from .wishes import Ask, Build, Picture, Request, StageRun, Tell
 
 ID = "s04_auxiliary"
@@ -32,6 +34,7 @@ class _Placing:
         standing: what this stage made the last time, with all hand edits since; None the first time.
         kept: ids that stay as they stand, where nothing that carries them moved. `locked` ones stay in any case.
         freed: ids that the artist unlocked: the solver may move them from where they were put by hand.
+        tops: how high things end by the analysis, by id, metres.
     """
 
     layout: Layout
@@ -41,6 +44,7 @@ class _Placing:
     standing: Layout | None = None
     kept: frozenset[str] = frozenset()
     freed: frozenset[str] = frozenset()
+    tops: dict[str, float] = field(default_factory=dict)
     ledger: dict[str, LedgerEntry] = field(default_factory=dict)
     findings: list[Finding] = field(default_factory=list)
 
@@ -116,7 +120,7 @@ class _Placing:
         if item.placement == "wall":
             return place.on_wall(item, self.layout.walls, self.calibration)
         if item.placement == "surface":
-            return place.on_surface(item, place.parents_of(self.layout), self.calibration)
+            return place.on_surface(item, place.parents_of(self.layout), self.calibration, self.tops)
         return place.on_floor(item, self.calibration)
 
 
@@ -134,7 +138,8 @@ def run(view: View) -> StageRun:
                 "There is no layout yet in which single objects could be redone.", "Run the whole stage first."
             )
         kept = frozenset(n for o in analysis.objects if not view.chosen(o.id) and (n := names[o.id]) is not None)
-    placing = _Placing(layout, calibration, view.locked, view.hand_edits, standing, kept, view.freed)
+    tops = {name: o.centre[2] + o.size[2] / 2 for o in analysis.objects if (name := names[o.id]) is not None}
+    placing = _Placing(layout, calibration, view.locked, view.hand_edits, standing, kept, view.freed, tops)
     for item in analysis.left_out:
         placing.note(item, "dropped", LEFT_OUT)
     for item in analysis.objects:
@@ -158,7 +163,7 @@ def run(view: View) -> StageRun:
     if standing is not None:
         layout = pinned(layout, standing, view.locked - {p.id for p in layout.proxies}, names.values())
     unusable = [f for f in early if f.severity != "warning" or layout.proxy(f.about) is None]
-    text = print_layout(layout)
+    text = furnished(view, layout)
     yield Tell("Building the room", 2, 2)
     yield Build(text)
     ledger = [placing.ledger[o.id] for o in [*analysis.objects, *analysis.left_out]]
@@ -234,5 +239,5 @@ STAGE = Stage(
     run=run,
     notes=True,
     partial=True,
-    recalls=(Reads(LayoutProgram, (ID,)),),
+    recalls=(Reads(LayoutProgram, (ID,)), Reads(Furnishing, FURNISHING)),
 )

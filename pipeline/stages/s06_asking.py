@@ -15,8 +15,9 @@ from ..objects.asking import batches, crop_of, object_line, picture_box
 from ..objects.choose import candidates
 from ..objects.detailing import Detailing
 from ..objects.examples import nearest_programs
+from ..objects.mending import mended
 from ..objects.written import Written, take_program
-from ..program.prelude.palette import ROLE_COLOURS, category_family
+from ..program.prelude.palette import category_family
 from ..program.reference import reference
 from .base import View
 from .wishes import Ask, Picture, Portrait, Request, Tell, Wish
@@ -66,8 +67,9 @@ def _piece_lines(piece: catalogue.Piece) -> str:
 def _line(detailing: Detailing, number: int, proxy: ProxyLine) -> str:
     described = detailing.described(proxy.id)
     parent = detailing.layout.proxy(proxy.parent) if proxy.parent else None
-    line = object_line(number, proxy, described, parent)
-    return f"{line}; {described.words}" if described.words else line
+    on_it = ", ".join(p.id for p in detailing.layout.proxies if p.parent == proxy.id)
+    carries = f"carries {on_it}, which are not part of it" if on_it else ""
+    return "; ".join(part for part in (object_line(number, proxy, described, parent), described.words, carries) if part)
 
 
 def write_programs(view: View, detailing: Detailing) -> Asking:
@@ -131,13 +133,13 @@ class _Draft:
     def take(self, detailing: Detailing) -> None:
         """Evaluate and check what was written."""
         if self.source:
-            self.made, self.problem = self._evaluated(detailing, self.source)
+            self.made, self.problem, self.source = self._evaluated(detailing, self.source)
 
     def mend(self, detailing: Detailing, reply: ProgramReply | None) -> None:
         """Take a correction where it is better by the checks, or as good: it was written after a look."""
         if reply is None or reply.keep or not reply.program.strip():
             return
-        made, problem = self._evaluated(detailing, reply.program)
+        made, problem, _ = self._evaluated(detailing, reply.program)
         if made is None:
             self.problem = self.problem or problem
         elif self.made is None or made.checked.penalty <= self.made.checked.penalty + _BETTER:
@@ -154,13 +156,22 @@ class _Draft:
             f"Its program could not be used ({worst[:160].rstrip('.')}); a library piece is there."
         )
 
-    def _evaluated(self, detailing: Detailing, source: str) -> tuple[Written | None, str]:
+    def _evaluated(self, detailing: Detailing, source: str) -> tuple[Written | None, str, str]:
+        """What the program makes, or why it cannot be used; and the program itself, rewritten where it had to be."""
         name = detailing.names[self.proxy.id]
         taken = {*detailing.standing.defs, *(n for i, n in detailing.names.items() if i != self.proxy.id)}
         try:
-            return take_program(source, self.proxy, name, taken), ""
+            return take_program(source, self.proxy, name, taken), "", source
         except ProgramError as error:
-            return None, str(error)
+            problem = str(error)
+        try:
+            rewritten = mended(source)
+            if rewritten is None:
+                return None, problem, source
+            source = rewritten
+            return take_program(source, self.proxy, name, taken), "", source
+        except ProgramError as error:
+            return None, str(error), source
 
     def told(self) -> str:
         """The program and what is wrong with it, for the second round."""
@@ -184,7 +195,6 @@ def _first_request(view: View, detailing: Detailing, number: int, batch: Sequenc
         reply=ProgramsReply,
         values={
             "reference": reference(),
-            "roles": ", ".join(ROLE_COLOURS),
             "style": detailing.style.style or "not known",
             "objects": "\n".join(lines) + view.noted(p.id for p in batch),
             "crops": ", ".join(str(numbers[p.id]) for p, _ in shown) or "none",
@@ -212,7 +222,6 @@ def _second_request(view: View, detailing: Detailing, number: int, batch: Sequen
         reply=ProgramsReply,
         values={
             "reference": reference(),
-            "roles": ", ".join(ROLE_COLOURS),
             "pictures": "; ".join(f"{n} {what}" for n, what in enumerate(order, 1)) or "none",
             "objects": "\n\n".join(draft.told() for draft in batch),
         },

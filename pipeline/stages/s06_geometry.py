@@ -7,8 +7,6 @@ programs; what fails leaves the library piece in place, with a note.
 
 from __future__ import annotations
 
-import re
-
 from ..artifacts.analysis import Calibration, Finding, SceneAnalysis
 from ..artifacts.layout import Layout, LayoutProgram, LedgerEntry
 from ..artifacts.objects import Descriptions, Geometry, ObjectProgram, OwnModelling, RoomStyle
@@ -17,18 +15,18 @@ from ..layout.hand import apply_hand_edits, name_now
 from ..objects.detailing import Detailing
 from ..program.lines import parse_layout
 from .base import Reads, Stage, View
+from .carrying import Renames, carried_on
 from .s06_asking import choose_pieces, write_programs
 from .wishes import Build, StageRun, Tell
 
 ID = "s06_geometry"
-_FURNISHED = re.compile(r'^(furnish\(\s*")([^"\\]+)(")', re.MULTILINE)
 
 
 def run(view: View) -> StageRun:
     """Write the `LayoutProgram` with everything furnished, and `Geometry`, which says who modelled what."""
     before = view.need(LayoutProgram)
     layout, findings = apply_hand_edits(parse_layout(before.text), view.hand_edits, before.hand_edits)
-    standing, names = view.recall(LayoutProgram), _Names(view, layout)
+    standing, names = view.recall(LayoutProgram), _Names(view.hand_edits, layout)
     if view.only is not None and standing is None:
         raise RoomError("Nothing is modelled yet that could be kept.", "Run the whole stage first.")
     detailing = Detailing.begin(
@@ -51,34 +49,13 @@ def run(view: View) -> StageRun:
     geometry = detailing.geometry()
     yield Tell("Building the room", 3, 3)
     yield Build(text)
-    unusable = [f for f in findings if f.severity != "warning" or layout.proxy(f.about) is None]
-    program = before.model_copy(
-        update={
-            "text": text,
-            "stage": ID,
-            "ledger": [_ledger_line(view, entry, geometry) for entry in before.ledger],
-            "findings": [*before.findings, *(f for f in unusable if f not in before.findings)],
-            "iterations": [],
-            "hand_edits": len(view.hand_edits),
-        }
-    )
+    ledger = [_ledger_line(view, entry, geometry) for entry in before.ledger]
+    program = carried_on(view, before, ID, text, layout, findings, ledger, iterations=[])
     return [program, geometry.model_copy(update={"findings": [*geometry.findings, _summary(geometry)]})]
 
 
-class _Names:
-    """What objects that were renamed by hand since are called now."""
-
-    def __init__(self, view: View, layout: Layout) -> None:
-        self._present = {p.id for p in layout.proxies}
-        self._renames = [(e.id, e.new_id) for e in view.hand_edits if e.op == "rename" and e.new_id]
-
-    def now(self, identifier: str) -> str:
-        """The present id; the same one when nothing of that name is there any more."""
-        at = identifier
-        for old, new in self._renames:
-            if at == old and at not in self._present and new is not None:
-                at = new
-        return at
+class _Names(Renames):
+    """What objects that were renamed by hand since are called now, in everything that this stage reads."""
 
     def in_descriptions(self, found: Descriptions) -> Descriptions:
         """Descriptions under present ids."""
@@ -95,10 +72,6 @@ class _Names:
         """What the artist says under present ids."""
         functions = {self.now(i): self.in_text(code) for i, code in own.functions.items()}
         return OwnModelling(functions=functions, boxes=[self.now(i) for i in own.boxes])
-
-    def in_text(self, text: str) -> str:
-        """Furnish statements of a text under present ids."""
-        return _FURNISHED.sub(lambda m: m[1] + self.now(m[2]) + m[3], text)
 
 
 def _kept(view: View, layout: Layout) -> frozenset[str]:

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Stage 7, small objects: what stands or lies on something is put onto the built surfaces, where the picture shows it.
 
-Nothing is asked: surfaces, free area and heights are known from the geometry by now. (Paper, stage 7.)
+Nothing is asked: surfaces, free area and heights are known from the geometry by now. What fits an asset of the artist's
+own libraries looks like it afterwards (`s07_retrieval`). (Paper, stage 7.)
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from ..artifacts.analysis import Calibration, DetectedObject, Finding, SceneAnalysis
+from ..artifacts.assets import ChosenAssets
 from ..artifacts.layout import Layout, LayoutProgram, LedgerEntry, ProxyLine
 from ..artifacts.objects import Descriptions, Geometry, ObjectProgram, OwnModelling, RoomStyle
 from ..artifacts.surfaces import SmallObjects, SmallPlace
@@ -16,6 +18,7 @@ from ..layout.auxiliary import order_by_depth
 from ..layout.hand import apply_hand_edits
 from ..layout.initial import proxy_of
 from ..layout.pins import pinned
+from ..objects.cloths import is_lying_cloth
 from ..objects.detailing import Detailing
 from ..objects.text import relaid
 from ..program.evaluate import evaluate
@@ -25,6 +28,8 @@ from ..program.prelude.proxies import proxy_shapes
 from ..program.prelude.shape import Shape
 from ..surfaces.choose import Carriers, Seated, base_of, carriers_under
 from .base import Reads, Stage, View
+from .carrying import carried_on
+from .s07_retrieval import SETTING, retrieve
 from .wishes import Build, StageRun, Tell
 
 ID = "s07_surfaces"
@@ -48,17 +53,11 @@ def run(view: View) -> StageRun:
         text, geometry = _modelled(view, seating, text, geometry)
     yield Tell("Building the room", 3, 3)
     yield Build(text)
-    unusable = [f for f in findings if f.severity != "warning" or layout.proxy(f.about) is None]
-    program = before.model_copy(
-        update={
-            "text": text,
-            "stage": ID,
-            "ledger": [seating.ledger_line(entry) for entry in before.ledger],
-            "findings": [*before.findings, *(f for f in unusable if f not in before.findings)],
-            "hand_edits": len(view.hand_edits),
-        }
-    )
-    return [program, SmallObjects(places=seating.places, findings=seating.findings), geometry]
+    assets = yield from retrieve(view, seating.layout, seating.open_names())
+    ledger = [seating.ledger_line(entry) for entry in before.ledger]
+    program = carried_on(view, before, ID, text, layout, findings, ledger)
+    small = SmallObjects(places=seating.places, findings=[*seating.findings, *assets.findings])
+    return [program, small, geometry, *([assets.chosen] if assets.chosen is not None else [])]
 
 
 def _as_it_stands(view: View, layout: Layout) -> Layout:
@@ -76,9 +75,10 @@ def _as_it_stands(view: View, layout: Layout) -> Layout:
 
 
 def shapes_of(text: str) -> dict[str, list[Shape]]:
-    """The parts of every object of a room text in its own frame; a bare proxy's are its box."""
+    """The parts of every object of a room text in its own frame, cloths not laid yet; a bare proxy's are its box."""
     record = evaluate(text, FINISHED_ROOM_LIMITS)
-    return {line["id"]: record.furnished.get(line["id"]) or proxy_shapes(line) for line in record.proxies}
+    made = record.furnished | record.plain
+    return {line["id"]: made.get(line["id"]) or proxy_shapes(line) for line in record.proxies}
 
 
 @dataclass
@@ -118,6 +118,12 @@ class _Seating:
         for item in order_by_depth(sorted(open_ids.values(), key=lambda o: -o.size[0] * o.size[1])):
             self._seat(item, carriers, calibration)
 
+    def open_names(self) -> set[str]:
+        """Ids of the small objects that this run places."""
+        analysis = self.view.need(SceneAnalysis)
+        names = self.view.names(analysis)
+        return {name for o in analysis.objects if (name := names[o.id]) is not None and self._is_open(name, o)}
+
     def _is_open(self, name: str, item: DetectedObject) -> bool:
         proxy = self.layout.proxy(name)
         if name in self.view.locked or not self.view.chosen(item.id):
@@ -127,7 +133,9 @@ class _Seating:
     def _seat(self, item: DetectedObject, carriers: Carriers, calibration: Calibration) -> None:
         standing = self.layout.proxy(item.id)
         parent = (standing.parent if standing is not None else None) or item.parent or ""
-        lying = carriers.spread(standing) if standing is not None and standing.parent == parent else None
+        lying = None
+        if standing is not None and standing.parent == parent and parent in carriers.proxies:
+            lying = carriers.lain(standing) if is_lying_cloth(standing) else carriers.spread(standing)
         if lying is not None:
             carriers.add(lying)
             self._place(lying)
@@ -232,5 +240,6 @@ STAGE = Stage(
     writes=(LayoutProgram, SmallObjects, Geometry),
     run=run,
     partial=True,
-    recalls=(Reads(LayoutProgram, (ID,)), Reads(OwnModelling)),
+    settings=(SETTING,),
+    recalls=(Reads(LayoutProgram, (ID,)), Reads(OwnModelling), Reads(ChosenAssets)),
 )

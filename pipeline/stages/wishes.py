@@ -3,6 +3,8 @@
 
 `Ask` is answered with a list of validated replies in the order of its requests; `Build` with a `SceneSummary` of what
 stands in the scene; `Render` with PNG bytes; `Portrait` with PNG bytes, empty where nothing can draw; `Tell` with None.
+`FindAssets` is answered with `FoundAssets`; `PrepareAsset` with the asset's size in metres, or a sentence that says why it
+cannot be had; `Dress` with a sentence for each object, by id, that stays as it was.
 """
 
 from __future__ import annotations
@@ -13,9 +15,11 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from ..artifacts.assets import AssetRef, ChosenAsset
 from ..artifacts.camera import CameraModel
 from ..artifacts.layout import Layout
 from ..program.prelude.shape import Shape
+from ..retrieval.match import Match, Wanted
 
 
 @dataclass(frozen=True)
@@ -101,7 +105,43 @@ class Tell:
     steps: int = 0
 
 
-Wish = Ask | Build | Render | Portrait | Tell
+@dataclass(frozen=True)
+class FindAssets:
+    """What fits these objects among the artist's asset libraries; the first search reads the libraries' files."""
+
+    wanted: tuple[Wanted, ...]
+
+
+@dataclass(frozen=True)
+class FoundAssets:
+    """What was found.
+
+    Attributes:
+        matches: by the object's id, best first. searched: how many assets there are; 0 without libraries.
+        problems: a sentence for each library or file that was left out.
+    """
+
+    matches: Mapping[str, list[Match]] = field(default_factory=dict)
+    searched: int = 0
+    problems: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class PrepareAsset:
+    """Have an asset at hand, which nobody sees yet."""
+
+    ref: AssetRef
+
+
+@dataclass(frozen=True)
+class Dress:
+    """Let objects look like assets, and take assets off others, which are then built as the program says."""
+
+    chosen: tuple[ChosenAsset, ...]
+    bare: tuple[str, ...] = ()
+
+
+Wish = Ask | Build | Render | Portrait | FindAssets | PrepareAsset | Dress | Tell
 StageRun = Generator[Wish, Any, list[BaseModel]]
 """A stage's generator; its return value is the list of artifacts that it writes."""
 
@@ -109,9 +149,13 @@ __all__ = [
     "Ask",
     "Build",
     "CameraModel",
+    "Dress",
+    "FindAssets",
+    "FoundAssets",
     "Layout",
     "Picture",
     "Portrait",
+    "PrepareAsset",
     "Render",
     "Request",
     "StageRun",

@@ -9,14 +9,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+
+import numpy as np
 
 from ..artifacts.analysis import Calibration, DetectedObject
 from ..artifacts.layout import ProxyLine
 from ..layout.initial import proxy_of
+from ..objects.cloths import is_lying_cloth
 from ..program.prelude.shape import Shape
+from .cover import below, carried, lain
 from .find import Surface, support_surfaces
-from .seat import Seat, find_seat, occupied
+from .rasters import Samples, sample
+from .seat import CLOSE, ROUND, Seat, find_seat, occupied
+from .settle import FINE, drop
 
 REACH = 0.12
 """How far in metres beyond its own half length a thing is moved to find a place, before other surfaces are tried."""
@@ -28,6 +34,8 @@ SHRINK_COST = 6.0
 show, and of being made smaller by its whole size, in the same unit."""
 COVERS = 0.35
 """A thing whose outline covers this share of a surface lies spread over it (duvet, throw, tablecloth): others lie on it."""
+THIN = 0.4
+"""How high a spread thing is at most, as a share of its shorter side, unless it hangs down over an edge."""
 LYING = 0.02
 """A thing stands on another when its base is within this many metres of the other's surface."""
 
@@ -57,6 +65,7 @@ class Carriers:
     shapes: Mapping[str, Sequence[Shape]]
     proxies: dict[str, ProxyLine] = field(default_factory=dict)
     _surfaces: dict[str, list[Surface]] = field(default_factory=dict)
+    _fine: dict[str, Samples | None] = field(default_factory=dict)
 
     def surfaces(self, name: str) -> list[Surface]:
         """The surfaces of one thing, highest first."""
@@ -68,8 +77,15 @@ class Carriers:
         """A thing that stands where it stands; what it stands on is occupied there."""
         self.proxies[proxy.id] = proxy
         parent = self.proxies.get(proxy.parent or "")
-        if proxy.placement != "surface" or parent is None or self.spread_on(proxy.size, parent.id) is not None:
+        if parent is not None and is_lying_cloth(proxy):
+            self._cover(proxy, parent)
             return
+        if proxy.placement != "surface" or parent is None or self.spread_on(proxy, parent) is not None:
+            return
+        self._take(proxy, parent)
+
+    def _take(self, proxy: ProxyLine, parent: ProxyLine) -> None:
+        """What a thing stands on is occupied there."""
         base = proxy.centre[2] - proxy.size[2] / 2 - base_of(parent)
         x, y = to_local(parent, proxy.centre[:2])
         for number, surface in enumerate(self.surfaces(parent.id)):
@@ -77,17 +93,36 @@ class Carriers:
                 cells = occupied(surface.grid, x, y, proxy.size[0], proxy.size[1], proxy.yaw - parent.yaw)
                 self._surfaces[parent.id][number] = surface.taken(cells)
 
-    def spread_on(self, size: Sequence[float], parent: str) -> Surface | None:
-        """The surface over which a thing of this size is spread, None where it stands on it or hangs from it."""
-        outline = size[0] * size[1]
-        wide = [s for s in self.surfaces(parent) if s.open_share > 0.3 and s.area >= 0.6 * outline]
+    def lain(self, proxy: ProxyLine) -> ProxyLine:
+        """A cloth at the height at which it lies on what carries it."""
+        return lain(proxy, self.shapes.get(proxy.id, ()), below(proxy, self.proxies, self.shapes))[0]
+
+    def _cover(self, proxy: ProxyLine, parent: ProxyLine) -> None:
+        """From now on a cloth belongs to the surface of what it lies on."""
+        found = lain(proxy, self.shapes.get(proxy.id, ()), below(proxy, self.proxies, self.shapes))[1]
+        covered = [*self.shapes.get(parent.id, ()), *carried(found, proxy, parent)]
+        self.shapes = {**self.shapes, proxy.id: found, parent.id: covered}
+        for name in (proxy.id, parent.id):
+            self._surfaces.pop(name, None)
+            self._fine.pop(name, None)
+        for other in self.proxies.values():
+            if other.parent == parent.id and other.placement == "surface" and not is_lying_cloth(other):
+                self._take(other, parent)
+
+    def spread_on(self, proxy: ProxyLine, parent: ProxyLine) -> Surface | None:
+        """The surface over which a thing is spread, None where it stands on it or hangs from it."""
+        outline = proxy.size[0] * proxy.size[1]
+        wide = [s for s in self.surfaces(parent.id) if s.open_share > 0.3 and s.area >= 0.6 * outline]
         largest = max(wide, key=lambda s: s.area, default=None)
-        return largest if largest is not None and outline >= COVERS * largest.area else None
+        if largest is None or outline < COVERS * largest.area:
+            return None
+        thin = proxy.size[2] <= THIN * min(proxy.size[:2])
+        return largest if thin or _hangs_over(proxy, largest, proxy.yaw - parent.yaw) else None
 
     def spread(self, proxy: ProxyLine) -> ProxyLine | None:
         """A thing that is spread over its parent, at a height at which it touches it; None when it is no such thing."""
         parent = self.proxies.get(proxy.parent or "")
-        surface = self.spread_on(proxy.size, parent.id) if parent is not None else None
+        surface = self.spread_on(proxy, parent) if parent is not None else None
         if parent is None or surface is None:
             return None
         level = base_of(parent) + surface.level
@@ -107,7 +142,20 @@ class Carriers:
             if surface.area >= 0.3 * item.size[0] * item.size[1]
             for offer in self._offers(item, calibration, carrier, surface)
         ]
-        return min(offers, key=lambda o: o[0])[1] if offers else None
+        return self._settled(min(offers, key=lambda o: o[0])[1], carrier) if offers else None
+
+    def _settled(self, seated: Seated, carrier: ProxyLine) -> Seated:
+        """The same place, at the height at which the two meshes touch."""
+        proxy = seated.proxy
+        if carrier.id not in self._fine:
+            self._fine[carrier.id] = sample(self.shapes.get(carrier.id, ()), FINE)
+        below = self._fine[carrier.id]
+        if below is None or proxy.id not in self.shapes:
+            return seated
+        place = (*to_local(carrier, proxy.centre[:2]), base_of(proxy) - base_of(carrier))
+        down = drop(self.shapes[proxy.id], seated.scale, below, place, proxy.yaw - carrier.yaw)
+        centre = (*proxy.centre[:2], proxy.centre[2] - down)
+        return replace(seated, proxy=proxy.model_copy(update={"centre": centre}))
 
     def _offers(
         self, item: DetectedObject, calibration: Calibration, carrier: ProxyLine, surface: Surface
@@ -117,7 +165,9 @@ class Carriers:
         wanted = to_local(carrier, lifted.centre[:2])
         turn = lifted.yaw - carrier.yaw
         near = REACH + max(lifted.size[:2]) / 2
-        seat = find_seat(surface, wanted, lifted.size, turn, near) or find_seat(surface, wanted, lifted.size, turn)
+        tries = ((near, ROUND), (near, CLOSE), (math.inf, ROUND), (math.inf, CLOSE))
+        seats = (find_seat(surface, wanted, lifted.size, turn, *limits) for limits in tries)
+        seat = next((s for s in seats if s is not None), None)
         if seat is None:
             return []
         stated = item.centre[2] - item.size[2] / 2
@@ -132,6 +182,15 @@ class Carriers:
             + SHRINK_COST * (1 - seat.scale)
         )
         return [(cost, Seated(seated_proxy(lifted, carrier, seat), seat.moved, seat.scale, surface.part))]
+
+
+def _hangs_over(proxy: ProxyLine, surface: Surface, turn: float) -> bool:
+    """Whether a thing is longer or wider than a surface, so that it must hang down over its edges."""
+    cells = np.isfinite(surface.heights)
+    extent = [float(np.ptp(np.flatnonzero(cells.any(axis=axis))) + 1) * surface.grid.cell for axis in (1, 0)]
+    cos, sin = abs(math.cos(math.radians(turn))), abs(math.sin(math.radians(turn)))
+    reach = (proxy.size[0] * cos + proxy.size[1] * sin, proxy.size[0] * sin + proxy.size[1] * cos)
+    return reach[0] > extent[0] + LYING or reach[1] > extent[1] + LYING
 
 
 def base_of(proxy: ProxyLine) -> float:

@@ -27,6 +27,8 @@ BURIED = 0.3
 """A level face with another upward face this near above it, metres, and nothing between them, lies inside a solid."""
 STEP = 0.07
 """What lies up to this many metres below a surface, beside it, carries together with it."""
+RIM = 0.008
+"""What rises less than this many metres above a surface, beside it, is in nobody's way."""
 SKIN = 0.004
 """Crossings nearer than this to each other are two faces of one sheet."""
 
@@ -40,6 +42,8 @@ class Surface:
         heights: height of each cell (columns, rows), NaN outside of the surface.
         clearance: free height above each cell, infinite under the open sky, 0 outside.
         free: cells on which nothing stands yet.
+        beside: free height above the surface's level in the cells outside of it: 0 where the thing itself rises there (a
+            backrest, a rim), infinite where nothing of it is.
         part: name of the part that makes up most of it.
     """
 
@@ -48,6 +52,7 @@ class Surface:
     heights: Floats
     clearance: Floats
     free: NDArray[np.bool_]
+    beside: Floats
     part: str
 
     @property
@@ -93,7 +98,7 @@ def support_surfaces(shapes: Sequence[Shape], least_area: float = LEAST_AREA) ->
         found.append(_surface(samples.grid, cells[inside], heights[inside], above[inside], owner[inside], shapes))
         cells, heights, above, owner = cells[~inside], heights[~inside], above[~inside], owner[~inside]
     found.sort(key=lambda s: -s.level)
-    return [_with_steps(surface, found) for surface in found]
+    return [_with_rims(_with_steps(surface, found), samples) for surface in found]
 
 
 def _with_steps(surface: Surface, others: Sequence[Surface]) -> Surface:
@@ -104,6 +109,17 @@ def _with_steps(surface: Surface, others: Sequence[Surface]) -> Surface:
             filled = np.isnan(heights) & np.isfinite(other.heights)
             heights[filled], clearance[filled] = other.heights[filled], other.clearance[filled]
     return replace(surface, heights=heights, clearance=clearance, free=np.isfinite(heights))
+
+
+def _with_rims(surface: Surface, samples: Samples) -> Surface:
+    """The surface with what rises beside it."""
+    higher = samples.heights > surface.level + RIM
+    # Crossings are sorted by height within a cell: the first one of each cell counts.
+    cells, first = np.unique(samples.cells[higher], return_index=True)
+    above = np.where(samples.facing[higher][first], 0.0, samples.heights[higher][first] - surface.level)
+    beside = np.full(surface.heights.size, np.inf)
+    beside[cells] = above
+    return replace(surface, beside=beside.reshape(surface.heights.shape))
 
 
 def _usable(samples: Samples) -> tuple[NDArray[np.bool_], Floats]:
@@ -145,4 +161,5 @@ def _surface(
     part = shapes[int(np.bincount(owner).argmax())].part
     inside = np.isfinite(table).reshape(grid.shape)
     level = float(np.percentile(heights, 95))
-    return Surface(grid, level, table.reshape(grid.shape), room.reshape(grid.shape), inside, part)
+    open_beside = np.full(grid.shape, np.inf)
+    return Surface(grid, level, table.reshape(grid.shape), room.reshape(grid.shape), inside, open_beside, part)

@@ -44,7 +44,7 @@ class Samples:
 
     Attributes:
         cells: flat index (column * rows + row) of each crossing; heights in metres.
-        up: whether the surface there is nearly level and faces upward.
+        up: whether the surface there is nearly level and faces upward; facing: whether it faces upward at all.
         owner: index of the shape that was crossed.
     """
 
@@ -52,6 +52,7 @@ class Samples:
     cells: Ints
     heights: Floats
     up: NDArray[np.bool_]
+    facing: NDArray[np.bool_]
     owner: Ints
 
 
@@ -98,7 +99,7 @@ def sample(shapes: Sequence[Shape], cell: float, level: float = 0.9) -> Samples 
     # Upright triangles have no extent from above; they do not take room beyond their edges' neighbours.
     seen = np.abs(cross[:, 2]) > 1e-12
     corners, owner, cross, length = corners[seen], owner[seen], cross[seen], length[seen]
-    up = cross[:, 2] > level * length
+    up, facing = cross[:, 2] > level * length, cross[:, 2] > 0
     low = np.floor((corners[:, :, :2].min(axis=1) - grid.origin) / cell - 0.5).astype(np.int64)
     high = np.ceil((corners[:, :, :2].max(axis=1) - grid.origin) / cell - 0.5).astype(np.int64)
     low, high = np.maximum(low, 0), np.minimum(high, np.array(grid.shape) - 1)
@@ -109,7 +110,7 @@ def sample(shapes: Sequence[Shape], cell: float, level: float = 0.9) -> Samples 
     heights = np.concatenate([f[2] for f in found])
     order = np.lexsort((heights, cells))
     triangle = triangle[order]
-    return Samples(grid, cells[order], heights[order], up[triangle], owner[triangle])
+    return Samples(grid, cells[order], heights[order], up[triangle], facing[triangle], owner[triangle])
 
 
 def _parts(pairs: Ints) -> list[slice]:

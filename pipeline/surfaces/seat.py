@@ -18,6 +18,10 @@ COVER = 0.85
 """Share of a footprint that must lie on the surface; the rest may hang over its edge."""
 SHARED = 0.08
 """Share of a footprint that may reach into a neighbour's: outlines are boxes, things are rounder."""
+ROUND = 0.02
+CLOSE = 0.12
+"""Share of a footprint that may reach into what rises beside the surface (a backrest, a rim): as a rule, for the same
+reason, and where there is no other place."""
 SHRINK = (1.0, 0.85, 0.7)
 """How far a thing that is too large for its surface is made smaller, in this order."""
 
@@ -47,6 +51,7 @@ def find_seat(
     size: tuple[float, float, float],
     turn: float,
     reach: float = math.inf,
+    beyond: float = ROUND,
 ) -> Seat | None:
     """The nearest place to `wanted` where a thing can stand, or None.
 
@@ -55,10 +60,11 @@ def find_seat(
         size: width, depth and height of the thing, metres.
         turn: its yaw in the surface's frame, degrees counter-clockwise.
         reach: how far from `wanted` it may stand, metres.
+        beyond: share of its footprint that may reach into what rises beside the surface.
     """
     for scale in SHRINK:
         scaled = (size[0] * scale, size[1] * scale, size[2] * scale)
-        seat = _seat(surface, wanted, scaled, turn, scale, reach)
+        seat = _seat(surface, wanted, scaled, turn, scale, reach, beyond)
         if seat is not None:
             return seat
     return None
@@ -71,6 +77,7 @@ def _seat(
     turn: float,
     scale: float,
     reach: float,
+    beyond: float,
 ) -> Seat | None:
     grid = surface.grid
     kernel = footprint_kernel(grid.cell, size[0], size[1], turn)
@@ -78,11 +85,14 @@ def _seat(
     high_enough = np.isfinite(surface.heights) & (surface.clearance >= size[2] - 1e-6)
     on = _correlate(high_enough, kernel) / total
     free = _correlate(high_enough & surface.free, kernel) / total
+    too_low = np.where(np.isfinite(surface.heights), surface.clearance, surface.beside) < size[2] - 1e-6
+    blocked = _correlate(too_low, kernel) / total
     columns, rows = np.meshgrid(np.arange(grid.shape[0]), np.arange(grid.shape[1]), indexing="ij")
     x, y = grid.origin[0] + (columns + 0.5) * grid.cell, grid.origin[1] + (rows + 0.5) * grid.cell
     distance = np.hypot(x - wanted[0], y - wanted[1])
     # The middle must be carried, or the thing tips over.
     possible = (on >= COVER) & (on - free <= SHARED) & high_enough & (distance <= reach + grid.cell)
+    possible &= blocked <= beyond + 1e-9
     if not possible.any():
         return None
     column, row = np.unravel_index(int(np.where(possible, distance, np.inf).argmin()), possible.shape)

@@ -142,20 +142,20 @@ def test_a_request_of_a_kind_that_nobody_can_answer_is_said_so(recording: Record
         client.answer(prompt("PoemReply", "09_poem"), threading.Event())
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize(("seed", "which"), [(0, 0), (1, 1), (2, 2), (3, 1), (0, 2)])
 def test_no_noise_ends_a_run_and_the_method_recovers_what_it_can(
-    recording: Recording, truth: Room, seed: int, tmp_path: Path
+    recording: Recording, truth: Room, seed: int, which: int, tmp_path: Path
 ) -> None:
-    for strength in STRENGTHS:
-        outcome = run_variant(recording, {"rounds": "2"}, strength, seed)
-        program = outcome.memory.latest(LayoutProgram)
-        assert program is not None and program.stage == "s04_auxiliary"
-        figures = score(truth, room_of(outcome.document.model_dump(mode="json"), outcome.shapes))
-        direct = score(truth, room_from_reply(first(recording.seen, strength, seed)))
-        assert (figures["object_recall"] or 0) >= (direct["object_recall"] or 0) - 0.05
-        assert (figures["self_overlap"] or 0) < 0.05
-        write_run(outcome, tmp_path)
-        assert json.loads((tmp_path / "scene.json").read_text(encoding="utf-8"))["objects"]
+    strength = STRENGTHS[which]
+    outcome = run_variant(recording, {"rounds": "2"}, strength, seed)
+    program = outcome.memory.latest(LayoutProgram)
+    assert program is not None and program.stage == "s04_auxiliary"
+    figures = score(truth, room_of(outcome.document.model_dump(mode="json"), outcome.shapes))
+    direct = score(truth, room_from_reply(first(recording.seen, strength, seed)))
+    assert (figures["object_recall"] or 0) >= (direct["object_recall"] or 0) - 0.05
+    assert (figures["self_overlap"] or 0) < 0.05
+    write_run(outcome, tmp_path)
+    assert json.loads((tmp_path / "scene.json").read_text(encoding="utf-8"))["objects"]
 
 
 def test_a_stand_in_that_mends_everything_brings_the_room_back(recording: Recording, truth: Room) -> None:

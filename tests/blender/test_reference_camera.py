@@ -203,3 +203,12 @@ def test_a_room_that_is_linked_from_another_file_is_left_alone(picture: str, tmp
     fitted_view.follow(linked)
     fitted_view.show_background(linked)
     assert len(bpy.data.cameras) == count
+
+
+def test_a_room_whose_picture_was_taken_away_has_no_frame_and_no_error(picture: str) -> None:
+    camera = load(picture)
+    for key in [k for k in camera.keys() if "size" in k]:
+        del camera[key]
+    bpy.context.scene.code_as_room.picture = None
+    assert picture_size(camera) is None
+    assert fitted_view._corners(None, bpy.context.scene, camera) is None  # type: ignore[arg-type]

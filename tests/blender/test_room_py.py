@@ -32,6 +32,9 @@ proxy("round_1", "pouf", centre=(-1.5, -1.2, 0.2), size=(0.5, 0.5, 0.4), shape="
 proxy("desk_1", "desk", centre=(1.7, -1.0, 0.4), size=(1.0, 1.2, 0.8), yaw=90, shape="l_shape")
 proxy("lamp_1", "lamp", centre=(1.7, -1.0, 1.0), size=(0.3, 0.3, 0.4), parent="desk_1", placement="surface", salience="minor")
 proxy("vase_1", "vase", centre=(-1.9, 1.6, 0.3), size=(0.4, 0.4, 0.6), salience="minor")
+proxy("stool_1", "stool", centre=(-0.6, -1.4, 0.25), size=(0.4, 0.4, 0.5), salience="minor")
+proxy("stool_2", "stool", centre=(-0.1, -1.4, 0.25), size=(0.4, 0.4, 0.5), yaw=30, salience="minor")
+proxy("cloth_1", "runner", centre=(1.7, -1.0, 0.85), size=(0.9, 0.5, 0.02), yaw=80, parent="desk_1", placement="surface")
 light("sun_1", "sun", at=(0, 0, 5), energy=3, target=(0.5, 0, 0))
 camera("reference", "perspective", matrix=(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 6, 0, 0, 0, 1), fov_y=0.9, image_size=(640, 480))
 
@@ -83,6 +86,20 @@ def vase():
     return [material("glass", body), smooth(join(stems), False), rim, foot, half, other, edge, flag, lid] + tags
 
 
+def cloth(size):
+    wall = 0.004
+    camera = lambda u, v, tall=wall: tall * sin(30 * u)
+    return part("cloth", solidify(grid(camera, 20, 12, (size[0], size[1])), 0.01), material="linen")
+
+
+def stool(size, room=0.05):
+    box = cylinder(size[0] / 2, room, at=(0, 0, size[2] - room / 2))
+    return part("seat", box, material="wood")
+
+
+furnish("cloth_1", cloth, lying=True)
+furnish("stool_1", stool)
+furnish("stool_2", stool)
 furnish("bed \\\\"1\\\\" é", bed_1())
 furnish("vase_1", vase())
 build()
@@ -137,6 +154,8 @@ def test_the_text_means_the_same_in_plain_python_and_in_the_add_on(tmp_path, emp
     bpy.context.view_layer.update()
     ours = json.loads(json.dumps(dump()))
     assert plain.keys() == ours.keys()
+    assert bpy.data.objects["stool_1"].data == bpy.data.objects["stool_2"].data
+    assert ours["cloth_1"]["vertices"] != [list(v) for s in evaluate(ROOM).plain["cloth_1"] for v in s.vertices]
     for name, entry in ours.items():
         assert plain[name] == entry, name
     assert {'bed "1" é', "round_1", "desk_1", "lamp_1", "vase_1", "sun_1", "reference", "wall_s", "floor"} <= set(plain)

@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 
 def public_names() -> set[str]:
     """What a room may use of the prelude."""
-    return {*registry.CONSTANTS, *registry.MATH, *registry.CONSTRUCTORS, *registry.LINE_NAMES}
+    return {*registry.CONSTANTS, *registry.MATH, *registry.CONSTRUCTORS, *registry.LOOKS, *registry.LINE_NAMES}
 
 
 def module_names(text: str) -> tuple[set[str], set[str]]:

@@ -67,7 +67,12 @@ def test_at_most_ten_problems() -> None:
         ("x = {'a': 1}\ny = x['b']", 2, "the dict has no key 'b'"),
         ("x = [\n  1,\n  sqrt(-1),\n]", 3, "not defined for this number"),
         ("print('x')", 1, "Leave it out"),
-        ("def f(max):\n    return max", 1, "max belongs to the room language"),
+        ("max = 1", 1, "max belongs to the room language"),
+        (
+            "def f():\n    box = box((1, 1, 1))\n    return box\nx = f()",
+            2,
+            "Call the variable something else, such as box_1.",
+        ),
         ("x = '\u0430'\n\u0430 = 1", 2, "CYRILLIC SMALL LETTER A"),
         ("def f(n):\n    return f(n - 1)", 1, "f calls itself"),
         ("x = '%d' % 3", 1, "f-string"),

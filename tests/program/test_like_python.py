@@ -180,6 +180,13 @@ SAME = {
     "list_grows_while_read": "b = [1]\nfor x in b:\n    if len(b) < 5:\n        append(b, x + 1)\na = b",
     "line_joining": "a = [1,\n     2,  # two\n     3]\nb = 1 + \\\n    2\nc = 1; d = 2",
     "starred": "b = [1, 2]\na = [[*b, 3, *'xy'], (*b,), max(*b)]",
+    "own_names_in_defs": "def f(wall, top=2):\n    camera = wall + top\n    def box(x):\n        return x * camera\n"
+    "    return [box(room) for room in (1, 2)]\na = [f(1), f(1, top=5), abs(-1)]",
+    "own_names_seen_from_inside": "def f():\n    max = 3\n    def g():\n        return max\n"
+    "    h = lambda min: min + max\n    return [g(), h(4)]\na = [f(), max(1, 2)]",
+    "own_names_in_comprehensions": "a = [[min for min in (3, 1)], {len: 1 for len in 'ab'}, min(3, 1), len('ab')]",
+    "lambda_defaults": "n = 1\nfs = [lambda x, k=k, m=n: (x, k, m) for k in range(2)]\nn = 9\n"
+    "a = [[f(0) for f in fs], [f(5, m=7) for f in fs]]",
     "pass_and_blank": "def f():\n    pass\nif True:\n    pass\na = f()",
 }
 

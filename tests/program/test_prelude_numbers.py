@@ -87,5 +87,5 @@ def test_every_name_of_the_registry_is_its_own_and_documented() -> None:
         assert function.__name__ == name and inspect.getdoc(function)
     for name in registry.LINE_NAMES:
         assert callable(getattr(Recorder(), name))
-    names = [*registry.CONSTANTS, *registry.MATH, *registry.CONSTRUCTORS, *registry.LINE_NAMES]
+    names = [*registry.CONSTANTS, *registry.MATH, *registry.CONSTRUCTORS, *registry.LOOKS, *registry.LINE_NAMES]
     assert len(set(names)) == len(names) and not any(name.startswith("_") for name in names)

@@ -30,11 +30,14 @@ def test_a_record_holds_the_fields_of_the_typed_lines() -> None:
     recorder.window("window_1", "wall_s", (-1, -1), (-0.5, -1))
     recorder.opening("opening_1", "wall_s", (1, -1), (1.5, -1))
     recorder.light("sun", "sun", at=(0, 0, 5), energy=3)
+    recorder.world("sky", strength=0.4, kelvin=6500)
+    recorder.view("view", exposure=0.5, ceiling=2.5)
     recorder.camera("reference", "perspective", IDENTITY, fov_y=0.9)
     recorder.furnish("bed_1", [box((1, 1, 1))])
     recorder.build()
     record = recorder.record
-    lists = [record.walls, record.doors, record.windows, record.openings, record.proxies, record.lights, record.cameras]
+    lists = [record.walls, record.doors, record.windows, record.openings, record.proxies, record.lights]
+    lists += [record.worlds, record.views, record.cameras]
     for kind, lines in zip(list(LINE_TYPES)[1:], lists, strict=True):
         typed = LINE_TYPES[kind].model_validate(lines[0])
         assert typed.model_dump() == lines[0]

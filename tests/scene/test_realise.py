@@ -191,7 +191,7 @@ def test_furnished_proxies_show_their_parts(record: Any) -> None:
     realise_record(record)
     mesh = thing("bed_1").data
     assert np.allclose(mesh.vertices[4].co, (0.6, 0.1, 0.1), atol=1e-6)
-    assert [slot.name for slot in mesh.materials] == ["Room wood", "Room fabric"]
+    assert [slot.name for slot in mesh.materials] == ["Room wood #B58B5E", "Room fabric #B9B4AA"]
     assert [(p.material_index, p.use_smooth) for p in mesh.polygons] == [(0, False), (1, True)]
     assert list(mesh["code_as_room_parts"]) == ["leg", "pillow"]
     assert [tuple(c.vector) for c in mesh.uv_layers[0].uv][:3] == [(0, 0), (1, 0), (0, 1)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import io
 import json
 import threading
@@ -19,6 +20,7 @@ from code_as_room.pipeline.memory import Memory
 from code_as_room.pipeline.models.base import Prompt, Reply
 from code_as_room.pipeline.picture import ReferencePicture, read_picture
 from code_as_room.pipeline.run import Run
+from code_as_room.pipeline.stages import s01_analysis
 from PIL import Image
 
 EMPTY = {
@@ -116,6 +118,23 @@ def analysis_reply(analysis: SceneAnalysis) -> dict[str, Any]:
             for o in analysis.objects
         ],
     }  # fmt: skip
+
+
+_fitted: dict[str, Any] = {}
+_fit = s01_analysis.calibrate
+
+
+def _calibrate(analysis: SceneAnalysis, *rest: Any, **more: Any) -> Any:
+    """The camera of a picture, found once for each analysis; it depends on nothing else and takes half of a small run."""
+    key = repr((analysis.model_dump_json(), rest, sorted(more.items(), key=str)))
+    if key not in _fitted:
+        _fitted[key] = _fit(analysis, *rest, **more)
+    return copy.deepcopy(_fitted[key])
+
+
+@pytest.fixture(autouse=True)
+def _cameras_found_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(s01_analysis, "calibrate", _calibrate)
 
 
 @pytest.fixture

@@ -19,7 +19,7 @@ from code_as_room.pipeline.program.limits import FINISHED_ROOM_LIMITS
 from code_as_room.pipeline.program.lines import parse_layout
 from code_as_room.pipeline.run import Run, StageSession
 from code_as_room.pipeline.run_modelling import forget_own, note_own_functions, show_as_boxes
-from code_as_room.pipeline.stages import all_stages
+from code_as_room.pipeline.stages import all_stages, carrying
 
 STAGES = all_stages()[:6]
 DESCRIPTIONS, GEOMETRY = STAGES[4:]
@@ -309,3 +309,28 @@ def test_a_room_of_forty_objects_asks_within_the_budget(run: Run, answers: Any) 
 )
 def test_strong_models_write_and_weak_ones_choose(client: str, way: str) -> None:
     assert modelling_of(client) == way
+
+
+def test_laying_out_again_keeps_the_furniture(run: Run) -> None:
+    run.run_all(STAGES)
+    before = furnished(run)
+    major = {p.id for p in parse_layout(run.memory.latest(LayoutProgram, ("s03_layout",)).text).proxies}  # type: ignore[union-attr]
+    small = set(before) - major
+    assert major and small
+    run.run_stage(next(s for s in STAGES if s.id == "s03_layout"))
+    assert set(furnished(run)) == major
+    run.run_stage(next(s for s in STAGES if s.id == "s04_auxiliary"))
+    assert set(furnished(run)) == set(before)
+    assert run.backend.program_text() == run.memory.latest(LayoutProgram).text  # type: ignore[union-attr]
+
+
+def test_a_thing_that_became_another_is_a_box_until_it_is_modelled(run: Run, answers: Any) -> None:
+    run.run_all(STAGES)
+    text = run.memory.latest(LayoutProgram).text  # type: ignore[union-attr]
+    layout = parse_layout(text)
+    changed = layout.proxies[0].model_copy(update={"category": "harp"})
+    new = layout.model_copy(update={"proxies": [changed, *layout.proxies[1:]]})
+    view = run.view(next(s for s in STAGES if s.id == "s04_auxiliary"))
+    kept = carrying.furnished(view, new)
+    assert f'furnish("{changed.id}"' not in kept and f'furnish("{layout.proxies[1].id}"' in kept
+    assert parse_layout(kept) == new

@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 from code_as_room.pipeline.program.evaluate import evaluate_object
 from code_as_room.pipeline.surfaces.find import Surface, support_surfaces
+from code_as_room.pipeline.surfaces.rasters import sample
 from code_as_room.pipeline.surfaces.seat import Seat, find_seat, occupied
+from code_as_room.pipeline.surfaces.settle import FINE, drop
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -113,3 +115,37 @@ def test_seats_stay_on_the_surface_and_off_each_other(things: list[tuple[float, 
         taken.append((seat, width, depth, turn))
         top = top.taken(seat.cells)
     assert taken
+
+
+def test_a_thing_keeps_out_of_what_rises_beside_its_surface() -> None:
+    """An armchair's seat between a back and arms: a cushion that is wanted inside of the back stands before it."""
+    seat = block("seat", (0.6, 0.6, 0.4))
+    back = block("back", (0.6, 0.1, 0.9), y=0.35)
+    found = next(s for s in surfaces(f"{seat}, {back}") if s.part == "seat")
+    cushion = find_seat(found, (0.0, 0.26), (0.4, 0.16, 0.3), 0.0)
+    assert cushion is not None and cushion.y + 0.08 <= 0.31 and cushion.moved < 0.06
+    open_edge = find_seat(found, (0.0, -0.26), (0.4, 0.12, 0.3), 0.0)
+    assert open_edge is not None and open_edge.moved == 0.0, "over an open edge it may hang a little"
+
+
+def test_a_rim_counts_and_a_shelf_above_counts_only_for_what_reaches_it() -> None:
+    tray = f"{block('base', (0.4, 0.3, 0.02))}, {block('rim', (0.4, 0.02, 0.06), y=0.14)}"
+    found = next(s for s in surfaces(tray) if s.part == "base")
+    glass = find_seat(found, (0.0, 0.11), (0.08, 0.08, 0.12), 0.0)
+    assert glass is not None and glass.y + 0.04 <= 0.14
+    beam = f"{block('base', (0.4, 0.3, 0.02))}, {block('beam', (0.4, 0.1, 0.05), y=0.16, z=0.3)}"
+    low = next(s for s in surfaces(beam) if s.part == "base")
+    under = find_seat(low, (0.0, 0.11), (0.08, 0.08, 0.12), 0.0)
+    assert under is not None and under.moved == 0.0
+
+
+def test_a_round_thing_is_let_down_until_the_two_meshes_touch() -> None:
+    """A ball of 20 cm between two ridges that its box's corners rest on, but it does not."""
+    ridges = ", ".join([block("floor", (1.0, 1.0, 0.1)), block("ridge", (1.0, 0.06, 0.02), y=0.08, z=0.1)])
+    carrier = sample(evaluate_object("def thing():\n    return [" + ridges + "]\n", "thing"), FINE)
+    ball = evaluate_object("def ball():\n    return sphere(0.1, at=(0, 0, 0.1))\n", "ball")
+    assert carrier is not None
+    down = drop(ball, 1.0, carrier, (0.0, 0.0, 0.12), 0.0)
+    assert 0.005 < down < 0.02
+    assert drop(ball, 1.0, carrier, (0.0, -0.3, 0.1), 0.0) == pytest.approx(0.0, abs=2e-3)
+    assert drop(ball, 1.0, carrier, (0.0, -0.3, 0.09), 0.0) == pytest.approx(-0.01, abs=2e-3), "lifted out"

@@ -27,22 +27,33 @@ def number(where: str, name: str, value: Any, low: float = -COORDINATE_LIMIT, hi
     if not is_number(value):
         raise fail(where, f"{name} must be a finite number")
     if not low <= value <= high:
-        raise fail(where, f"{name} must be between {low:g} and {high:g}")
+        raise fail(where, f"{name} must be between {low:g} and {high:g}{told(value)}")
     return float(value)
 
 
 def positive(where: str, name: str, value: Any) -> float:
     """A finite number above zero."""
     if not is_number(value) or not 0 < value <= COORDINATE_LIMIT:
-        raise fail(where, f"{name} must be a positive number of at most {COORDINATE_LIMIT:g}")
+        raise fail(where, f"{name} must be a positive number of at most {COORDINATE_LIMIT:g}{told(value)}")
     return float(value)
 
 
 def whole(where: str, name: str, value: Any, low: int, high: int) -> int:
     """A whole number between low and high, both included."""
+    if isinstance(value, float) and value.is_integer():
+        value = int(value)
     if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
-        raise fail(where, f"{name} must be a whole number between {low} and {high}")
+        raise fail(where, f"{name} must be a whole number between {low} and {high}{told(value)}")
     return value
+
+
+def told(value: Any) -> str:
+    """ ", and is -0.2" for a number or a few of them, for whoever computed it; "" for anything else."""
+    values = value if isinstance(value, (tuple, list)) else (value,)
+    if not 1 <= len(values) <= 4 or not all(isinstance(v, (int, float)) and abs(v) < 1e15 for v in values):
+        return ""
+    words = ", ".join(f"{v:.6g}" for v in values)
+    return f", and is {words if values is not value else f'({words})'}"
 
 
 def point(where: str, name: str, value: Any, size: int = 3) -> tuple[float, ...]:
@@ -58,9 +69,9 @@ def point(where: str, name: str, value: Any, size: int = 3) -> tuple[float, ...]
 def sizes(where: str, name: str, value: Any) -> tuple[float, float, float]:
     """Three positive numbers."""
     if not isinstance(value, (tuple, list)) or len(value) != 3:
-        raise fail(where, f"{name} must be three positive numbers")
+        raise fail(where, f"{name} must be three positive numbers{told(value)}")
     if not all(is_number(v) and 0 < v <= COORDINATE_LIMIT for v in value):
-        raise fail(where, f"{name} must be three positive numbers of at most {COORDINATE_LIMIT:g}")
+        raise fail(where, f"{name} must be three positive numbers of at most {COORDINATE_LIMIT:g}{told(value)}")
     return float(value[0]), float(value[1]), float(value[2])
 
 
@@ -76,7 +87,9 @@ def text(where: str, name: str, value: Any, longest: int = 300, empty: bool = Tr
 
 
 def choice(where: str, name: str, value: Any, allowed: tuple[str, ...]) -> str:
-    """One of the allowed strings."""
+    """One of the allowed strings, whatever its case."""
+    if isinstance(value, str) and value not in allowed and value.lower() in allowed:
+        return value.lower()
     if not isinstance(value, str) or value not in allowed:
         raise fail(where, f"{name} must be one of {', '.join(allowed)}")
     return value

@@ -112,7 +112,7 @@ def mirror(shapes: Any, axis: Any = "x", at: Any = 0.0) -> Shapes:
 def array(shapes: Any, count: Any, step: Any) -> list[Shape]:
     """A list of copies, each moved on by step (x, y, z)."""
     found = flat_shapes("array", shapes)
-    copies = whole("array", "count", count, 1, 10_000)
+    copies = whole("array", "count", count, 0, 10_000)
     offset = np.array(point("array", "step", step))
     spend_vertices(copies * sum(shape.vertex_count for shape in found))
     if copies * len(found) > 100_000:

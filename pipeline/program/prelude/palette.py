@@ -43,6 +43,8 @@ ROLE_COLOURS: dict[str, tuple[str, float]] = {
     "floor": ("D8CFC3", 1.0),
     "wall": ("F1EEE8", 1.0),
     "partition": ("EAE6DE", 1.0),
+    "ceiling": ("F7F5F1", 1.0),
+    "section": ("77736E", 1.0),
     "frame": ("FBFAF8", 1.0),
     "door": ("CDB18E", 1.0),
     "metal": ("8C8C8C", 1.0),

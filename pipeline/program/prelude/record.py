@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
+from .looks import Look
 from .shape import Shape
 
 
@@ -18,6 +19,9 @@ class Record:
 
     Attributes:
         furnished: shapes in the proxy's local frame (origin at the centre of its base) by proxy id.
+        plain: those of cloths before they were laid onto what carries them.
+        finishes: looks by what they are for (a part's name, a material role, "" for all else), by the id or the name of
+            the surfaces that `finish` named.
         built: whether `build()` was called.
     """
 
@@ -28,6 +32,10 @@ class Record:
     openings: list[dict[str, Any]] = field(default_factory=list)
     proxies: list[dict[str, Any]] = field(default_factory=list)
     lights: list[dict[str, Any]] = field(default_factory=list)
+    worlds: list[dict[str, Any]] = field(default_factory=list)
+    views: list[dict[str, Any]] = field(default_factory=list)
     cameras: list[dict[str, Any]] = field(default_factory=list)
     furnished: dict[str, list[Shape]] = field(default_factory=dict)
+    plain: dict[str, list[Shape]] = field(default_factory=dict)
+    finishes: dict[str, dict[str, Look]] = field(default_factory=dict)
     built: bool = False

@@ -7,6 +7,8 @@ import math
 from typing import Any
 
 from .checks import choice, fail, flag, number, point, positive, sizes, text, whole
+from .covers import lay_covers
+from .looks import Look
 from .record import Record
 from .shape import Shape, flat_shapes
 
@@ -16,7 +18,12 @@ PLACEMENTS = ("floor", "wall", "ceiling", "surface")
 SALIENCES = ("major", "minor")
 PROXY_SHAPES = ("box", "round", "l_shape")
 LIGHT_KINDS = ("sun", "area", "point", "spot")
+VIEW_TRANSFORMS = ("AgX", "Filmic", "Standard", "Khronos PBR Neutral")
+HOTTEST = 40_000.0
 CAMERA_KINDS = ("perspective", "orthographic")
+SURFACES = ("floor", "walls", "ceiling", "skirting", "doors", "windows")
+"""What `finish` may name beside ids: all surfaces of a kind."""
+MOST_LOOKS = 60
 
 
 class Recorder:
@@ -29,6 +36,7 @@ class Recorder:
     def __init__(self) -> None:
         self.record = Record()
         self._ids: set[str] = set()
+        self._lying: list[str] = []
 
     def _start(self, where: str) -> None:
         if self.record.built:
@@ -135,8 +143,11 @@ class Recorder:
         color: Any = (1.0, 1.0, 1.0),
         size: Any = 0.1,
         target: Any = None,
+        size_y: Any = 0.0,
+        kelvin: Any = 0.0,
+        parent: Any = None,
     ) -> None:
-        """A lamp: linear colour, energy in Blender's watts."""
+        """A light: linear colour times that of `kelvin`, energy in Blender's watts; an area is size x size_y."""
         line = {
             "id": self._new("light", id),
             "kind": choice("light", "kind", kind, LIGHT_KINDS),
@@ -145,8 +156,48 @@ class Recorder:
             "color": point("light", "color", color),
             "size": number("light", "size", size, 0.0),
             "target": None if target is None else point("light", "target", target),
+            "size_y": number("light", "size_y", size_y, 0.0),
+            "kelvin": number("light", "kelvin", kelvin, 0.0, HOTTEST),
+            "parent": None if parent is None else text("light", "parent", parent, 100, empty=False),
         }
         self.record.lights.append(line)
+
+    def world(
+        self,
+        id: Any,
+        color: Any = (1.0, 1.0, 1.0),
+        strength: Any = 0.5,
+        kelvin: Any = 0.0,
+        background: Any = (1.0, 1.0, 1.0),
+    ) -> None:
+        """The light from all around (linear colour times that of `kelvin`), and what a camera sees outside; once."""
+        line = {
+            "id": self._only("world", id, self.record.worlds),
+            "color": point("world", "color", color),
+            "strength": number("world", "strength", strength, 0.0, 1e5),
+            "kelvin": number("world", "kelvin", kelvin, 0.0, HOTTEST),
+            "background": point("world", "background", background),
+        }
+        self.record.worlds.append(line)
+
+    def view(
+        self, id: Any, exposure: Any = 0.0, transform: Any = "AgX", look: Any = "", ceiling: Any = 0.0, cut: Any = 0.0
+    ) -> None:
+        """How the room is shown: exposure in stops, view transform and look, a one-sided ceiling, a section; once."""
+        line = {
+            "id": self._only("view", id, self.record.views),
+            "exposure": number("view", "exposure", exposure, -32.0, 32.0),
+            "transform": choice("view", "transform", transform, VIEW_TRANSFORMS),
+            "look": text("view", "look", look, 100),
+            "ceiling": number("view", "ceiling", ceiling, 0.0),
+            "cut": number("view", "cut", cut, 0.0),
+        }
+        self.record.views.append(line)
+
+    def _only(self, where: str, identifier: Any, before: list[dict[str, Any]]) -> str:
+        if before:
+            raise fail(where, f"there is already a {where} line; write it once")
+        return self._new(where, identifier)
 
     def camera(
         self,
@@ -157,6 +208,7 @@ class Recorder:
         ortho_height: Any = 0.0,
         image_size: Any = (1024, 1024),
         principal: Any = (500.0, 500.0),
+        near: Any = 0.02,
     ) -> None:
         """A camera: camera-to-world matrix row by row, vertical field of view in radians or height in metres."""
         if not isinstance(image_size, (list, tuple)) or len(image_size) != 2:
@@ -169,6 +221,7 @@ class Recorder:
             "ortho_height": number("camera", "ortho_height", ortho_height, 0.0),
             "image_size": tuple(whole("camera", "image_size", side, 1, 100_000) for side in image_size),
             "principal": point("camera", "principal", principal, 2),
+            "near": positive("camera", "near", near),
         }
         if kind == "perspective" and not line["fov_y"]:
             raise fail("camera", "a perspective camera needs fov_y, its vertical field of view in radians")
@@ -176,10 +229,11 @@ class Recorder:
             raise fail("camera", "orthographic cameras need ortho_height, the metres that its picture's height spans")
         self.record.cameras.append(line)
 
-    def furnish(self, id: Any, shapes: Any) -> None:
+    def furnish(self, id: Any, shapes: Any, lying: Any = False) -> None:
         """Put shapes in the place of proxy `id`; they are in its local frame, origin at the centre of its base.
 
-        A function of the proxy's size (width, depth, height) may be given instead; so the shapes follow the size.
+        A function of the proxy's size (width, depth, height) may be given instead; so the shapes follow the size. A cloth
+        that is `lying` follows the heights of what carries it, and hangs down over its edges.
         """
         self._start("furnish")
         name = text("furnish", "the id", id, 100, empty=False)
@@ -194,6 +248,26 @@ class Recorder:
         if not found:
             raise fail("furnish", f"there are no shapes for {name!r}")
         self.record.furnished[name] = found
+        if flag("furnish", "lying", lying):
+            self._lying.append(name)
+
+    def finish(self, id: Any, looks: Any) -> None:
+        """Say what an object, a wall or fitting, or all surfaces of a kind ("floor", "walls", ...) look like.
+
+        `looks` is one look, or looks by part name, by material role, and by "" for everything else.
+        """
+        self._start("finish")
+        name = text("finish", "the id", id, 100, empty=False)
+        if name in self.record.finishes:
+            raise fail("finish", f"{name!r} is finished twice; put all its looks into one finish")
+        given = {"": looks} if isinstance(looks, Look) else looks
+        if not isinstance(given, dict) or not given or len(given) > MOST_LOOKS:
+            raise fail("finish", 'looks must be a dict such as {"frame": wood("#6A4A32"), "": linen("#EFEAE0")}')
+        for key, look in given.items():
+            text("finish", "each part or material", key, 60)
+            if not isinstance(look, Look):
+                raise fail("finish", f'{key!r} must be given a look, such as wood("#6A4A32") or principled(...)')
+        self.record.finishes[name] = dict(given)
 
     def size_of(self, name: str) -> tuple[float, float, float] | None:
         """The size of a proxy whose line was read already, None for others."""
@@ -212,9 +286,19 @@ class Recorder:
         parents = {line["id"]: line["parent"] for line in record.proxies}
         fixed = walls | {line["id"] for line in record.doors + record.windows + record.openings}
         check_parents(parents, fixed)
+        for line in record.lights:
+            if line["parent"] is not None and line["parent"] not in parents and line["parent"] not in fixed:
+                raise fail("build", f"the light {line['id']!r} shines from {line['parent']!r}, which does not exist")
         for name in record.furnished:
             if name not in parents:
                 raise fail("build", f"furnish names {name!r}, which is not a proxy of this room")
+        lay_covers(record, self._lying)
+        known = {*parents, *fixed, *SURFACES}
+        for name in record.finishes:
+            if name not in known:
+                raise fail(
+                    "build", f"finish names {name!r}, which is nothing in this room; surfaces are {', '.join(SURFACES)}"
+                )
         record.built = True
 
 

@@ -17,6 +17,12 @@ from . import (
     cloth,
     growing,
     joinery,
+    looks,
+    looks_clear,
+    looks_cloth,
+    looks_grown,
+    looks_made,
+    maps,
     numbers,
     operations,
     outlines,
@@ -98,9 +104,50 @@ CONSTRUCTORS: dict[str, Callable[..., Any]] = {
 }
 """Pure functions of the prelude by name: numbers to numbers, numbers to shapes, shapes to shapes."""
 
+LOOKS: dict[str, Callable[..., Any]] = {
+    "wood": looks_grown.wood,
+    "planks": looks_grown.planks,
+    "painted_wood": looks_made.painted_wood,
+    "wicker": looks_grown.wicker,
+    "fabric": looks_cloth.fabric,
+    "linen": looks_cloth.linen,
+    "velvet": looks_cloth.velvet,
+    "knit": looks_cloth.knit,
+    "carpet": looks_cloth.carpet,
+    "leather": looks_cloth.leather,
+    "metal": looks_made.metal,
+    "glass": looks_clear.glass,
+    "mirror_glass": looks_clear.mirror_glass,
+    "marble": looks_grown.marble,
+    "stone": looks_grown.stone,
+    "tile": looks_made.tile,
+    "concrete": looks_made.concrete,
+    "plaster": looks_made.plaster,
+    "ceramic": looks_made.ceramic,
+    "plastic": looks_made.plastic,
+    "rubber": looks_made.rubber,
+    "paper": looks_made.paper,
+    "foliage": looks_grown.foliage,
+    "soil": looks_grown.soil,
+    "water": looks_clear.water,
+    "screen": looks_clear.screen,
+    "shade": looks_clear.shade,
+    "glow": looks_clear.glow,
+    "principled": looks.principled,
+    "noise_map": maps.noise_map,
+    "wave_map": maps.wave_map,
+    "voronoi_map": maps.voronoi_map,
+    "brick_map": maps.brick_map,
+    "picture": maps.picture,
+    "ramp": maps.ramp,
+    "mix": maps.mix,
+    "bump": maps.bump,
+}
+"""What a room says of materials: families of looks, looks of one's own, and the maps that these are made of."""
+
 LINE_NAMES: tuple[str, ...] = (
-    "room", "wall", "door", "window", "opening", "proxy", "light", "camera", "furnish", "build"
+    "room", "wall", "door", "window", "opening", "proxy", "light", "world", "view", "camera", "furnish", "finish", "build"
 )  # fmt: skip
 """Methods of `Recorder` that are in the language under their own names."""
 
-RESERVED: frozenset[str] = frozenset({*CONSTANTS, *MATH, *CONSTRUCTORS, *LINE_NAMES, *dir(builtins)})
+RESERVED: frozenset[str] = frozenset({*CONSTANTS, *MATH, *CONSTRUCTORS, *LOOKS, *LINE_NAMES, *dir(builtins)})

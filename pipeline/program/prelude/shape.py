@@ -62,7 +62,10 @@ def remeshed(shape: Shape, vertices: Floats, faces: Any, **more: Any) -> Shape:
 
 
 def flat_shapes(where: str, shapes: Any) -> list[Shape]:
-    """The shapes of one shape or of a list of shapes and lists, in order. Raises ValueError on anything else."""
+    """The shapes of one shape or of a list of shapes and lists, in order; None in a list is nothing.
+
+    Raises ValueError on anything else.
+    """
     found: list[Shape] = []
     open_lists: list[Any] = [shapes]
     while open_lists:
@@ -71,7 +74,7 @@ def flat_shapes(where: str, shapes: Any) -> list[Shape]:
             found.append(item)
         elif isinstance(item, (list, tuple)):
             open_lists.extend(reversed(item))
-        else:
+        elif item is not None or shapes is None:
             raise ValueError(f"{where}: expected a shape or a list of shapes, not {describe(item)}")
         if len(found) + len(open_lists) > 100_000:
             raise ValueError(f"{where}: too many shapes")

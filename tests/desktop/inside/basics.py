@@ -71,7 +71,7 @@ def run_all() -> Iterator[float]:
     call(bpy.ops.code_as_room.run_all, "INVOKE_DEFAULT")
     check("the button returns at once", driver.is_running())
     shot = 0
-    while driver.is_running() and time.monotonic() - began < 200:
+    while driver.is_running() and time.monotonic() - began < 400:
         progress = driver.progress_of(bpy.context.scene)
         if progress is not None and progress.number > shot and progress.what not in ("", "Starting"):
             shot = progress.number

@@ -17,6 +17,7 @@ import basics
 import edits
 import lifetime
 import looking
+import modelling
 import pointing
 from window import SHOTS, results
 
@@ -30,6 +31,7 @@ STEPS = (
     edits.move_and_resume,
     looking.capture_in_the_view,
     looking.look_through,
+    modelling.model_one_object,
     lifetime.results_and_reload,
     lifetime.resume_after_reload,
     lifetime.disable,

@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which objects are cloths that lie on others, and so take on their shape."""
+
+from __future__ import annotations
+
+import re
+
+from ..artifacts.layout import ProxyLine
+from ..program.lines import quoted
+
+_CLOTHS = frozenset({
+    "throw", "blanket", "duvet", "comforter", "quilt", "bedspread", "coverlet", "bedding", "plaid", "afghan", "sheet",
+    "tablecloth", "runner", "cloth", "placemat", "doily", "covers",
+})  # fmt: skip
+_BUNDLED = frozenset({"folded", "rolled", "stack", "stacked", "pile", "basket", "pillow", "pillows", "cushion", "box"})
+"""What is said of cloths that do not lie spread out, and of things that only are called after cloths."""
+MOST_HEIGHT = 0.6
+"""Of its shorter side; what is higher is a heap, or hangs."""
+
+
+def is_lying_cloth(proxy: ProxyLine) -> bool:
+    """Whether an object is a cloth that lies spread over what carries it."""
+    if proxy.placement != "surface" or not proxy.parent:
+        return False
+    words = set(re.findall(r"[a-z]+", f"{proxy.category} {proxy.label}".lower()))
+    kind = re.findall(r"[a-z]+", proxy.category.lower())
+    return (
+        bool(_CLOTHS.intersection(kind)) and not words & _BUNDLED and proxy.size[2] <= MOST_HEIGHT * min(proxy.size[:2])
+    )
+
+
+def furnish_line(proxy: ProxyLine, function: str) -> str:
+    """The statement that furnishes an object with a def of the room."""
+    lying = ", lying=True" if is_lying_cloth(proxy) else ""
+    return f"furnish({quoted(proxy.id)}, {function}{lying})"
