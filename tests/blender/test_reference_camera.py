@@ -14,6 +14,7 @@ import pytest
 from code_as_room.operators import fitted_view
 from code_as_room.operators.scene_backend import ResolvedScene
 from code_as_room.pipeline.geometry.camera import to_plane
+from code_as_room.pipeline.scene import reference_camera
 from code_as_room.pipeline.scene.reference_camera import (
     find_reference_camera,
     frame_corners,
@@ -207,8 +208,7 @@ def test_a_room_that_is_linked_from_another_file_is_left_alone(picture: str, tmp
 
 def test_a_room_whose_picture_was_taken_away_has_no_frame_and_no_error(picture: str) -> None:
     camera = load(picture)
-    for key in [k for k in camera.keys() if "size" in k]:
-        del camera[key]
+    del camera[reference_camera._SIZE]
     bpy.context.scene.code_as_room.picture = None
     assert picture_size(camera) is None
     assert fitted_view._corners(None, bpy.context.scene, camera) is None  # type: ignore[arg-type]

@@ -75,5 +75,5 @@ def test_exchanged_width_and_depth_are_noticed(analysis: SceneAnalysis, camera: 
 
 
 def test_nearly_straight_things_are_straightened_and_turned_ones_are_left() -> None:
-    assert straighten(91.5) == 90 and straighten(356) == 0 and straighten(-3) == 0
-    assert straighten(40) == 40
+    assert straighten(91.5) == 90 and straighten(358) == 0 and straighten(-2) == 0
+    assert straighten(40) == 40 and straighten(355) == 355
