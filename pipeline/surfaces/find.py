@@ -45,6 +45,7 @@ class Surface:
         beside: free height above the surface's level in the cells outside of it: 0 where the thing itself rises there (a
             backrest, a rim), infinite where nothing of it is.
         part: name of the part that makes up most of it.
+        smallest: cells of the smallest thing that stands on it, 0 for none.
     """
 
     grid: Grid
@@ -54,6 +55,7 @@ class Surface:
     free: NDArray[np.bool_]
     beside: Floats
     part: str
+    smallest: int = 0
 
     @property
     def area(self) -> float:
@@ -68,7 +70,9 @@ class Surface:
 
     def taken(self, cells: NDArray[np.bool_]) -> Surface:
         """The same surface with more cells occupied."""
-        return replace(self, free=self.free & ~cells)
+        count = int(cells.sum())
+        smallest = min(self.smallest, count) if self.smallest else count
+        return replace(self, free=self.free & ~cells, smallest=smallest)
 
 
 def support_surfaces(shapes: Sequence[Shape], least_area: float = LEAST_AREA) -> list[Surface]:

@@ -18,6 +18,8 @@ COVER = 0.85
 """Share of a footprint that must lie on the surface; the rest may hang over its edge."""
 SHARED = 0.08
 """Share of a footprint that may reach into a neighbour's: outlines are boxes, things are rounder."""
+COVERED = 0.2
+"""Share of the smallest neighbour that a larger thing may reach over, for the same reason."""
 ROUND = 0.02
 CLOSE = 0.12
 """Share of a footprint that may reach into what rises beside the surface (a backrest, a rim): as a rule, for the same
@@ -91,7 +93,8 @@ def _seat(
     x, y = grid.origin[0] + (columns + 0.5) * grid.cell, grid.origin[1] + (rows + 0.5) * grid.cell
     distance = np.hypot(x - wanted[0], y - wanted[1])
     # The middle must be carried, or the thing tips over.
-    possible = (on >= COVER) & (on - free <= SHARED) & high_enough & (distance <= reach + grid.cell)
+    shared = min(SHARED, COVERED * surface.smallest / total) if surface.smallest else SHARED
+    possible = (on >= COVER) & (on - free <= shared + 1e-9) & high_enough & (distance <= reach + grid.cell)
     possible &= blocked <= beyond + 1e-9
     if not possible.any():
         return None

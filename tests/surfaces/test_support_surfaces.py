@@ -11,7 +11,7 @@ from code_as_room.pipeline.surfaces.find import Surface, support_surfaces
 from code_as_room.pipeline.surfaces.rasters import sample
 from code_as_room.pipeline.surfaces.seat import Seat, find_seat, occupied
 from code_as_room.pipeline.surfaces.settle import FINE, drop
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 
@@ -100,6 +100,7 @@ spots = st.tuples(
 
 @settings(deadline=None, max_examples=40)
 @given(st.lists(spots, min_size=1, max_size=10))
+@example([(0.0, 0.0, 0.125, 0.0625, 0.0), (0.0, 0.0, 0.25, 0.25, 0.0)])
 def test_seats_stay_on_the_surface_and_off_each_other(things: list[tuple[float, float, float, float, float]]) -> None:
     [top] = surfaces(TABLE)
     taken: list[tuple[Seat, float, float, float]] = []
