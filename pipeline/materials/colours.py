@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which of an object's measured colours each of its parts has: the largest goes to the largest that is seen."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping, Sequence
+
+from ..artifacts.objects import MeasuredColour, ObjectDescription
+from ..objects.tinting import FIXED, calm
+from ..program.prelude.palette import ROLE_COLOURS
+from .difference import difference, lab_of
+from .parts import Cell
+
+SURE = 0.18
+"""An object of which less is seen keeps the colours of its program."""
+_LEAST = 0.03
+_NEAR = 14.0
+"""CIEDE2000 within which a program's own colour and a measured one are taken for the same thing."""
+_MOST = 4
+
+
+def part_colours(cells: Sequence[Cell], described: ObjectDescription) -> dict[str, str]:
+    """Six sRGB digits for each material of an object that the picture tells a colour for.
+
+    A program's own colours were chosen by somebody who saw the picture; they give way to what was measured when they
+    are near it, or when hardly anything else can be meant.
+    """
+    colours = list(described.measured) if described.seen >= SURE else []
+    if not colours and described.code:
+        colours = [MeasuredColour(code=described.code, share=1.0)]
+    shares: dict[str, float] = {}
+    for cell in cells:
+        if cell.role not in FIXED and cell.share > _LEAST:
+            shares[cell.material] = shares.get(cell.material, 0.0) + cell.share
+    if not colours or not shares:
+        return {}
+    own = {cell.material: cell for cell in cells}
+    materials = sorted(shares, key=lambda m: -shares[m])[:_MOST]
+    total = sum(shares[m] for m in materials)
+    best = min(_pairings(materials, colours, shares), key=lambda pairs: _cost(pairs, shares, total, own, colours))
+    return {m: calm(c.code) for m, c in best if _may(own[m], c, shares[m] / total)}
+
+
+def _pairings(
+    materials: Sequence[str], colours: Sequence[MeasuredColour], shares: Mapping[str, float]
+) -> list[list[tuple[str, MeasuredColour]]]:
+    """All ways to give a colour each to one of the larger materials and to some others; colours may be left over."""
+    count = min(len(materials), len(colours))
+    large = shares[materials[0]] / 2
+    return [
+        list(zip(chosen, given, strict=True))
+        for chosen in itertools.combinations(materials, count)
+        if shares[chosen[0]] >= large
+        for given in itertools.permutations(colours, count)
+    ]
+
+
+def _cost(
+    pairs: Sequence[tuple[str, MeasuredColour]],
+    shares: Mapping[str, float],
+    total: float,
+    own: Mapping[str, Cell],
+    colours: Sequence[MeasuredColour],
+) -> float:
+    cost = 0.0
+    for material, colour in pairs:
+        cell = own[material]
+        expected = cell.code or (ROLE_COLOURS[cell.role][0] if cell.role in ROLE_COLOURS else "A9A39B")
+        likeness = 3.0 if cell.role == "shade" else 2.0 if cell.code else 1.0
+        cost += 1.2 * abs(shares[material] / total - colour.share) + likeness * difference(expected, colour.code) / 60
+    return cost + 0.8 * sum(c.share for c in colours if c not in [given for _, given in pairs])
+
+
+def _may(cell: Cell, colour: MeasuredColour, share: float) -> bool:
+    light, a, b = lab_of(colour.code)
+    if cell.role == "foliage":
+        # Leaves stay green: what is measured between them is the floor or a shadow.
+        return a < -3 and b > 0
+    if cell.role == "shade" and light < 45:
+        return False
+    if not cell.code:
+        return True
+    return difference(cell.code, colour.code) < (2 * _NEAR if share > 0.6 and colour.share > 0.6 else _NEAR)
