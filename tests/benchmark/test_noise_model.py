@@ -12,7 +12,7 @@ from code_as_room.pipeline.artifacts.layout import LayoutProgram
 from code_as_room.pipeline.artifacts.replies import AnalysisReply, SecondLookReply
 from code_as_room.pipeline.errors import ModelError
 from code_as_room.pipeline.models.base import Prompt
-from code_as_room.pipeline.models.recorded import RecordedClient
+from code_as_room.pipeline.models.recorded import RecordedClient, load_replies
 
 from benchmark.draws import Draws
 from benchmark.known import Known
@@ -59,8 +59,13 @@ def test_without_noise_recorded_requests_are_answered_as_recorded(recording: Rec
     assert not client.simulated
 
 
-def test_without_noise_a_simulated_second_look_has_nothing_to_say(recording: Recording) -> None:
-    assert second_look(Known(recording.seen, NONE, 0), "") == SecondLookReply()
+def test_without_noise_a_simulated_second_look_says_what_the_recorded_one_did_and_nothing_else(
+    recording: Recording,
+) -> None:
+    recorded = SecondLookReply.model_validate(load_replies(recording.folder)["s01_analysis/01_second_look"]["reply"])
+    said = second_look(Known(recording.seen, NONE, 0), "")
+    assert not said.missed
+    assert {fix.id for fix in said.corrections} <= {fix.id for fix in recorded.corrections}
 
 
 def test_the_same_seed_gives_the_same_answers_and_another_seed_others(recording: Recording) -> None:
