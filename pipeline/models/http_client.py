@@ -14,11 +14,9 @@ import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Literal
-from urllib.parse import urlsplit
 
-from ..errors import ModelError
-from .addresses import is_local_url, normal_base_url
 from .base import Prompt, Reply
+from .endpoint import Endpoint
 from .exchange import Answer, Call, exchange
 from .faults import Fault, status_fault
 from .limits import Limits, Route
@@ -45,7 +43,7 @@ class Habits:
     most_tokens: int = 0
 
 
-class HttpClient:
+class HttpClient(Endpoint):
     """A client for one service and model. Safe to use from several threads. Subclasses know one service's envelope.
 
     Args:
@@ -56,11 +54,6 @@ class HttpClient:
         ModelError: the address, the model's name or the key cannot be right.
     """
 
-    vendor = ""
-    endpoints: tuple[str, ...] = ()
-    """Ends of addresses that people paste along with the base URL."""
-    default_path = "/v1"
-    key_header = "Authorization"
     reader: type[ReplyReader] = ReplyReader
     structures: tuple[Structure, ...] = ("schema", "object", "none")
     structure_words: tuple[str, ...] = ("schema",)
@@ -75,23 +68,11 @@ class HttpClient:
         retries: RetryPolicy | None = None,
         route: Route | None = None,
     ) -> None:
-        self.base_url = normal_base_url(base_url, self.default_path, self.endpoints)
-        self.model = model.strip()
-        if not self.model:
-            raise ModelError("No model is named.", "Give the model's name as the service spells it.")
-        self._key = checked_key(api_key)
+        super().__init__(base_url, model, api_key, route)
         self._limits = limits or Limits()
         self._retries = retries or RetryPolicy()
-        self._route = route or Route()
         self._habits = self.first_habits
         self._lock = threading.Lock()
-        self.host = urlsplit(self.base_url).hostname or ""
-        self.name = f"{self.vendor}:{self.model}"
-        where = "on this computer" if is_local_url(self.base_url) else f"at {self.host}"
-        self.describes = f"The model {self.model} {where}"
-
-    def __repr__(self) -> str:
-        return f"{type(self).__name__}({self.base_url!r}, {self.model!r})"
 
     @property
     def structure(self) -> Structure:
@@ -196,18 +177,6 @@ class HttpClient:
         if habits.stream and "stream" in said:
             return replace(habits, stream=False)
         return None
-
-
-def checked_key(key: str) -> str:
-    """The key without surrounding space.
-
-    Raises:
-        ModelError: it holds what no key holds; HTTP libraries would quote it in their errors.
-    """
-    key = key.strip()
-    if any(not 33 <= ord(char) <= 126 for char in key):
-        raise ModelError("The API key holds spaces or characters that no key has.", "Copy the key again.")
-    return key
 
 
 def picture_kind(image: bytes) -> str:

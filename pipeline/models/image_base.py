@@ -17,11 +17,10 @@ from urllib.parse import urlsplit
 
 from PIL import Image
 
-from ..errors import ModelError
-from .addresses import is_local_url, normal_base_url
+from .addresses import is_local_url
+from .endpoint import Endpoint
 from .exchange import Answer, Call, exchange
 from .faults import Fault, FaultKind, ServiceError, plain, quoted, status_fault
-from .http_client import checked_key
 from .limits import Limits, Route
 from .retry import RetryPolicy, with_retries
 
@@ -79,7 +78,7 @@ class ImageClient(Protocol):
         ...
 
 
-class ImageHttpClient:
+class ImageHttpClient(Endpoint):
     """A client for one image service and model. Safe to use from several threads. Subclasses know one envelope.
 
     Args:
@@ -90,10 +89,7 @@ class ImageHttpClient:
         ModelError: the address, the model's name or the key cannot be right.
     """
 
-    vendor = ""
-    endpoints: tuple[str, ...] = ()
-    default_path = "/v1"
-    key_header = "Authorization"
+    what = "image model"
 
     def __init__(
         self,
@@ -104,20 +100,8 @@ class ImageHttpClient:
         retries: RetryPolicy | None = None,
         route: Route | None = None,
     ) -> None:
-        self.base_url = normal_base_url(base_url, self.default_path, self.endpoints)
-        self.model = model.strip()
-        if not self.model:
-            raise ModelError("No image model is named.", "Give the model's name as the service spells it.")
-        self._key = checked_key(api_key)
+        super().__init__(base_url, model, api_key, route)
         self._limits, self._retries = limits or IMAGE_LIMITS, retries or IMAGE_RETRIES
-        self._route = route or Route()
-        self.host = urlsplit(self.base_url).hostname or ""
-        self.name = f"{self.vendor}:{self.model}"
-        where = "on this computer" if is_local_url(self.base_url) else f"at {self.host}"
-        self.describes = f"The image model {self.model} {where}"
-
-    def __repr__(self) -> str:
-        return f"{type(self).__name__}({self.base_url!r}, {self.model!r})"
 
     def url(self) -> str:
         """Where a request is sent."""
