@@ -18,6 +18,8 @@ def _classes() -> tuple[type, ...]:
         connection_ops,
         consent,
         detail_ops,
+        export_ops,
+        finish_ops,
         fitted_view,
         hand_ops,
         journal_ops,
@@ -31,6 +33,7 @@ def _classes() -> tuple[type, ...]:
         result_ops,
         rounds,
         stage_ops,
+        texture_ops,
     )
 
     modules = (
@@ -43,7 +46,10 @@ def _classes() -> tuple[type, ...]:
         object_ops,
         rounds,
         result_ops,
+        export_ops,
         render_ops,
+        texture_ops,
+        finish_ops,
         program_ops,
         detail_ops,
         asset_ops,

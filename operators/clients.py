@@ -24,6 +24,7 @@ from ..pipeline.models.registry import ClientSettings, make_client, settings_fro
 from ..pipeline.models.routing import GROUPS
 
 if TYPE_CHECKING:
+    from ..pipeline.models.image_base import ImageClient
     from ..pipeline.models.prices import Price, PriceList
     from ..pipeline.spending import Meter, RunEstimate
 
@@ -159,7 +160,9 @@ def room_meter(picture_hash: str, spent: float) -> Meter:
     from ..pipeline.spending import Meter
 
     meter = _meters.setdefault(picture_hash, Meter())
-    meter.cap = client_settings().spending_cap
+    preferences = add_on_preferences()
+    # The cap holds for painted images, too, whoever answers the questions.
+    meter.cap = client_settings().spending_cap if preferences is None else float(preferences.spending_cap)
     meter.raise_to(spent)
     return meter
 
@@ -260,12 +263,13 @@ class GuardedClient:
         return self.inner.answer(prompt, cancel, progress)
 
 
-def watch_online_access(client: ModelClient) -> None:
+def watch_online_access(client: ModelClient | ImageClient | None) -> None:
     """Tell a client on the network whether online access is still on. Main thread only."""
     found: Any = client
     while found is not None:
-        if isinstance(found, GuardedClient):
-            found.watch()
+        watch = getattr(found, "watch", None)
+        if watch is not None:
+            watch()
         found = getattr(found, "inner", None)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import shutil
 import sys
 import tempfile
 import traceback
@@ -16,12 +17,15 @@ from ..pipeline.errors import OutputError, RoomError
 
 if TYPE_CHECKING:
     from ..pipeline.models.base import ModelClient
+    from ..pipeline.models.image_base import ImageClient
     from ..pipeline.run import Run
 
 EXIT_PROBLEM = 1
 EXIT_USAGE = 2
 EXIT_STOPPED = 130
 DEBUG = "CODE_AS_ROOM_DEBUG"
+PAINTED = ".painted"
+"""Folder of the images that were painted, for as long as the run that paid for them has not ended."""
 
 
 def parser(program: str) -> argparse.ArgumentParser:
@@ -46,6 +50,8 @@ def parser(program: str) -> argparse.ArgumentParser:
         metavar="PIXELS",
         help="render the room's views too (render_reference.png, render_top.png, ...), with Cycles, this long a side (768)",
     )
+    result.add_argument("--glb", action="store_true", help="write room.glb too: the room as glTF, for other programs")
+    result.add_argument("--usd", action="store_true", help="write room.usdz too: the room as USD, for other programs")
     result.add_argument("--resume", action="store_true", help="go on from DIR/memory.json; finished stages are kept")
     group = result.add_argument_group("who answers (default: the built-in analysis, which needs no model)")
     group.add_argument("--base-url", metavar="URL", help="an OpenAI-style service, such as http://localhost:1234/v1")
@@ -53,6 +59,17 @@ def parser(program: str) -> argparse.ArgumentParser:
     group.add_argument("--key-env", metavar="NAME", help="environment variable that holds the key")
     group.add_argument("--replies", type=Path, metavar="DIR", help="play back replies recorded in this folder")
     group.add_argument("--record", type=Path, metavar="DIR", help="record every reply in this folder")
+    images = result.add_argument_group("who paints images for surfaces (default: nobody; the picture itself is used)")
+    images.add_argument(
+        "--image-base-url", metavar="URL", help="a service that paints, such as http://localhost:8080/v1"
+    )
+    images.add_argument("--image-model", metavar="NAME", help="the image model's name at that service")
+    images.add_argument("--image-key-env", metavar="NAME", help="environment variable that holds its key")
+    images.add_argument(
+        "--image-provider",
+        choices=("none", "openai", "gemini", "custom"),
+        help="which service's way of asking (custom)",
+    )
     return result
 
 
@@ -120,18 +137,33 @@ def _perform(options: argparse.Namespace) -> int:
             f"Blender's Python module cannot be loaded ({error}).", "Run `make demo` once, or use blender --command."
         ) from error
     from ..pipeline.run import Run
+    from ..pipeline.run_images import bring_images
     from ..pipeline.scene.backend import BlenderScene
     from ..pipeline.stages import all_stages
+    from ..pipeline.textures.kept import KeptImages
 
     bpy.ops.wm.read_factory_settings(use_empty=True)
-    run = Run(picture, memory, client, BlenderScene(bpy.context.scene), progress=_print_progress)
+    painter, painted = _painter(options, client), KeptImages(folder / PAINTED)
+    run = Run(
+        picture,
+        memory,
+        client,
+        BlenderScene(bpy.context.scene),
+        progress=_print_progress,
+        painter=painter,
+        painted=painted,
+    )
+    if painter is not None:
+        print(f"Images: {painter.describes}")
+    bring_images(memory, run.backend, folder)
     try:
         for stage in all_stages():
             run.run_all([stage])
             kept.keep(memory)
         _finish(run, folder)
+        _export(bpy.context.scene, folder, options)
         if options.render:
-            _render(bpy.context.scene, folder, max(64, min(4096, options.render)))
+            _render(run, bpy.context.scene, folder, max(64, min(4096, options.render)))
     except BaseException:
         # A client that is still waiting for an answer gives up on this.
         run.cancel.set()
@@ -140,6 +172,7 @@ def _perform(options: argparse.Namespace) -> int:
             print(kept.told())
         raise
     kept.finish()
+    shutil.rmtree(folder / PAINTED, ignore_errors=True)  # what was used lies beside room.py now
     return 0
 
 
@@ -158,16 +191,29 @@ def _finish(run: Run, folder: Path) -> None:
     print(f"Made by: {run.client.describes}")
     print(f"Results in {folder}:")
     for path in paths:
-        print(f"  {path.name}")
+        print(f"  {path.relative_to(folder).as_posix()}")
 
 
-def _render(scene: object, folder: Path, long_side: int) -> None:
-    """A picture of each of the room's cameras beside the other results."""
+def _export(scene: object, folder: Path, options: argparse.Namespace) -> None:
+    """The room for other programs, beside the other results."""
+    from ..pipeline.scene.exports import export_glb, export_usdz
+
+    for wanted, export, name in ((options.glb, export_glb, "room.glb"), (options.usd, export_usdz, "room.usdz")):
+        if wanted:
+            print(f"  {export(scene, folder / name).name}", flush=True)
+
+
+def _render(run: Run, scene: object, folder: Path, long_side: int) -> None:
+    """A picture of each of the room's cameras beside the other results, and in the report."""
     from ..pipeline.scene.shoot import camera_lines, shoot
+    from .outputs import write_report
 
+    renders = {}
     for line in camera_lines(scene):
         print(f"  Rendering {line.id}", flush=True)
-        shoot(scene, line.id, folder / f"render_{line.id}.png", long_side)
+        renders[line.id] = folder / f"render_{line.id}.png"
+        shoot(scene, line.id, renders[line.id], long_side)
+    write_report(run, folder, renders)
 
 
 def prepare_folder(folder: Path, option: str = "--out") -> Path:
@@ -225,6 +271,23 @@ def _client(options: argparse.Namespace) -> ModelClient:
     if options.record is None:
         return client
     return Recorder(client, prepare_folder(options.record, "--record"))
+
+
+def _painter(options: argparse.Namespace, client: ModelClient) -> ImageClient | None:
+    """The image model that the options, or the environment, name; its images count towards the questions' cap."""
+    from ..pipeline.models.image_registry import image_settings_from_environment, make_image_client
+    from ..pipeline.spending import Meter
+    from ..pipeline.spending_images import metered_painter
+
+    given = {
+        "PROVIDER": options.image_provider or "",
+        "BASE_URL": options.image_base_url or "",
+        "MODEL": options.image_model or "",
+        "API_KEY": os.environ.get(options.image_key_env, "") if options.image_key_env else "",
+    }
+    said = {f"CODE_AS_ROOM_IMAGE_{name}": value for name, value in given.items() if value}
+    settings = image_settings_from_environment({**os.environ, **said})
+    return metered_painter(make_image_client(settings), settings, getattr(client, "meter", None) or Meter())
 
 
 def _print_progress(what: str, step: int, steps: int) -> None:

@@ -12,12 +12,14 @@ from typing import Any
 import bpy
 
 from ..pipeline.errors import RoomError
-from . import clients
+from . import clients, painters
 from .base import RoomOperator, manager
 from .user_files import read_json, write_json
 
 _FILE = "services.json"
 _WIDTH, _CHARACTERS = 440, 72
+IMAGES = "images:"
+"""Before the host of an image model: what it is sent is less than what a model is sent that looks at the picture."""
 _session: set[str] = set()
 
 
@@ -50,6 +52,13 @@ def _hosts() -> list[str]:
 
 def what_is_sent(context: Any, host: str) -> list[tuple[str, str]]:
     """What a run would send and where to: sentences, each with its icon."""
+    if host.startswith(IMAGES):
+        return [
+            (f"To {host.removeprefix(IMAGES)} will be sent:", "WORLD"),
+            ("for each floor, rug and picture a few words, its size and its colours", "DOT"),
+            ("Nothing of the picture itself is sent, and nothing else of your file.", "NONE"),
+            ("Each image is paid for. You are asked once for each service.", "NONE"),
+        ]
     settings = context.scene.code_as_room
     image = settings.picture
     size = f", {image.size[0]} x {image.size[1]} pixels" if image is not None else ""
@@ -69,10 +78,11 @@ def what_is_sent(context: Any, host: str) -> list[tuple[str, str]]:
 def ask_first(context: Any, operator: Any) -> bool:
     """Ask for consent when it is missing; True when the operator has to wait for it. It is called again afterwards."""
     try:
-        host = clients.service_host()
+        hosts = [clients.service_host(), IMAGES + painters.image_host()]
     except RoomError:
         return False  # the run itself says what is wrong
-    if bpy.app.background or is_allowed(host):
+    host = next((host for host in hosts if host != IMAGES and not is_allowed(host)), "")
+    if bpy.app.background or not host:
         return False
     again = json.dumps(dict(operator.as_keywords()))
     ask: Any = bpy.ops.code_as_room.allow_service  # type: ignore[attr-defined]
@@ -99,8 +109,9 @@ class CODE_AS_ROOM_OT_allow_service(RoomOperator):
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[Any]:
         """Show what is about to be sent."""
+        title = "Ask an Image Model?" if self.host.startswith(IMAGES) else "Send Pictures to a Service?"
         result: set[Any] = manager(context).invoke_props_dialog(
-            self, width=_WIDTH, title="Send Pictures to a Service?", confirm_text="Allow and Run"
+            self, width=_WIDTH, title=title, confirm_text="Allow and Run"
         )
         return result
 

@@ -19,7 +19,7 @@ from ..pipeline.errors import Cancelled, RoomError
 from ..pipeline.run import Run, StageReport
 from ..pipeline.run_corrections import bring_up_to_date
 from ..pipeline.stages.base import Stage
-from . import asset_shelf, clients, journals, late, own_room, properties, reference, room_memory, view_state
+from . import asset_shelf, clients, journals, late, own_room, painters, properties, reference, room_memory, view_state
 from .job import Job
 from .meanwhile import NotApplied, in_hand
 from .progress import Durations, Progress
@@ -97,8 +97,11 @@ def make_run(scene: Any) -> tuple[Run, ResolvedScene]:
     memory = room_memory.copy_of(room_memory.memory_of(scene))
     memory.settings = properties.memory_settings(scene.code_as_room, memory.settings)
     journal = journals.journal_of(picture.sha256)
-    client = clients.room_client(picture.sha256, memory.cost()[2])
-    return Run(picture, memory, client, backend, journal=journal, shelf=asset_shelf.shelf()), backend
+    spent = memory.cost()[2]
+    client, painter = clients.room_client(picture.sha256, spent), painters.room_painter(picture.sha256, spent)
+    shelf, painted = asset_shelf.shelf(), painters.painted_images() if painter is not None else None
+    run = Run(picture, memory, client, backend, journal=journal, shelf=shelf, painter=painter, painted=painted)
+    return run, backend
 
 
 def start(

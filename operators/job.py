@@ -28,7 +28,7 @@ from ..pipeline.models.base import name_of
 from ..pipeline.run import Run, StageSession
 from ..pipeline.scene.plan import plan_build, warm_up
 from ..pipeline.stages.base import Stage
-from ..pipeline.stages.wishes import Ask, Build, FindAssets, Render, Tell
+from ..pipeline.stages.wishes import Ask, Build, FindAssets, Paint, Render, Tell
 from . import clients
 from .building import Building
 from .meanwhile import Meanwhile, in_hand, outdated
@@ -111,6 +111,7 @@ class Job:
         deadline = time.monotonic() + budget
         try:
             clients.watch_online_access(self.run.client)
+            clients.watch_online_access(self.run.painter)
             if self._worker.busy and time.monotonic() > self._stopped_at + PATIENCE:
                 self._end(Cancelled())
             while not self.over:
@@ -192,14 +193,14 @@ class Job:
             nonlocal session
             try:
                 session = self._session = move()
-                while isinstance(session.wish, Ask | FindAssets):
+                while isinstance(session.wish, Ask | FindAssets | Paint):
                     if self.run.cancel.is_set():
                         raise Cancelled
                     if isinstance(session.wish, FindAssets):  # reads files, which may take a while
                         session.send(session.act(session.wish))
                         continue
                     self.phase = "waiting for the model"
-                    replies = session.ask(session.wish, self._worker.tell)
+                    replies = session.answer(session.wish, self._worker.tell)
                     self.phase = "computing"
                     self.backend.save_memory(dump_memory(self.run.memory))
                     session.send(replies)

@@ -8,7 +8,8 @@ from typing import Any
 import bpy
 
 from ..pipeline.errors import RoomError
-from . import object_list, view_state
+from ..pipeline.stages.s10_finish import CORRECTIONS_OFF
+from . import fault_kinds, object_list, view_state
 
 
 def _background_changed(settings: Any, context: Any) -> None:
@@ -162,6 +163,19 @@ class CodeAsRoomSettings(bpy.types.PropertyGroup):
         default=True,
         update=_changed,
     )
+    corrections: bpy.props.EnumProperty(  # type: ignore[valid-type]
+        name="Corrections",
+        description="Faults that are mended in the finished room. What is not ticked is found and told of, and stays",
+        items=fault_kinds.KIND_ITEMS,
+        options={"ENUM_FLAG"},
+        default={item[0] for item in fault_kinds.KIND_ITEMS},
+        update=_changed,
+    )
+    spared: bpy.props.StringProperty(  # type: ignore[valid-type]
+        name="Kept as it was",
+        description="What is not corrected, one a line: the kind of fault, a colon, the object",
+        update=_changed,
+    )
     render_engine: bpy.props.EnumProperty(  # type: ignore[valid-type]
         name="Engine",
         description="What renders the room's views",
@@ -201,6 +215,7 @@ def memory_settings(settings: Any, earlier: dict[str, str]) -> dict[str, str]:
         "notes": settings.notes.strip(),
         "iterations": str(settings.iterations),
         "assets": "" if settings.use_assets else "off",
+        CORRECTIONS_OFF: fault_kinds.off_text(settings),
         "objects": "" if settings.modelling == "AUTO" else settings.modelling.lower(),
     }
     for name, value in values.items():

@@ -41,7 +41,9 @@ class CODE_AS_ROOM_OT_write_outputs(RoomOperator):
 
     def perform(self, context: bpy.types.Context) -> None:
         """Write the files."""
+        from . import render_ops
         from .outputs import write_outputs
+        from .report_pictures import fresh_renders
 
         scene = context.scene
         folder = chosen_folder(self.directory)
@@ -49,7 +51,9 @@ class CODE_AS_ROOM_OT_write_outputs(RoomOperator):
         run.take_over_edits()
         backend.flush()
         run.reports.extend(driver.reports_of(scene))
-        paths = write_outputs(run, folder)
+        cameras = [name for name, _ in render_ops.cameras(scene)]
+        renders = fresh_renders(render_ops.folder_of(scene), cameras, run.memory)
+        paths = write_outputs(run, folder, renders)
         rooms.note_results(scene, folder)
         view_state.refresh(scene)
         driver.note_outcome(scene, f"{len(paths)} files written to {folder.name or folder}")

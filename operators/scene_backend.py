@@ -102,6 +102,21 @@ class ResolvedScene:
         with self._scene() as scene:
             return scene.undress(ids)
 
+    def keep_images(self, images: Mapping[str, bytes]) -> None:
+        """As `ImageKeeper.keep_images`."""
+        with self._scene() as scene:
+            scene.keep_images(images)
+
+    def kept_images(self, names: Collection[str]) -> dict[str, bytes]:
+        """As `ImageKeeper.kept_images`."""
+        with self._scene() as scene:
+            return scene.kept_images(names)
+
+    def has_images(self, names: Collection[str]) -> bool:
+        """As `ImageKeeper.has_images`."""
+        with self._scene() as scene:
+            return scene.has_images(names)
+
     def text_edits(self) -> list[LayoutEdit] | None:
         """As `HandScene.text_edits`."""
         with self._scene() as scene:
@@ -164,10 +179,10 @@ class ResolvedScene:
         with self._scene() as scene:
             return scene.program_text()
 
-    def portrait(self, shapes: Sequence[Shape], family: str, long_side: int) -> bytes:
+    def portrait(self, shapes: Sequence[Shape], family: str, cameras: Sequence[CameraModel]) -> bytes:
         """As `Studio.portrait`."""
         with self._scene() as scene:
-            return scene.portrait(shapes, family, long_side)
+            return scene.portrait(shapes, family, cameras)
 
     def render_view(self, long_side: int) -> bytes:
         """As `SceneBackend.render_view`."""

@@ -29,7 +29,7 @@ from ..pipeline.run import Run
 from ..pipeline.run_corrections import edits_of, found_of, program_of
 from ..pipeline.stages import all_stages
 from ..pipeline.stages.base import View
-from . import clients, journals, reference, room_memory, view_state
+from . import clients, finish_state, journals, reference, room_memory, texture_state, view_state
 from .view_state import Problem, RoomState, StageRow
 
 A = TypeVar("A", bound=BaseModel)
@@ -67,7 +67,9 @@ def read(scene: Any) -> RoomState:
 
 def _with_memory(state: RoomState, uid: int, run: Run) -> RoomState:
     known, stages = _facts(run.memory, run.picture), _stages(run, uid)
-    state = replace(state, **known, stages=stages, has_memory=bool(run.memory.entries))
+    titles = {row.name: row.title for row in known["objects"] if row.name}
+    textures, finish = texture_state.read(run.memory, titles), finish_state.read(run.memory, titles)
+    state = replace(state, **known, stages=stages, textures=textures, finish=finish, has_memory=bool(run.memory.entries))
     if not state.uses_model or state.client_problem is not None:
         return state
     return replace(state, estimate=_estimate(run, stages), spending=_spending(run))

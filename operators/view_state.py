@@ -8,7 +8,7 @@ driver call it. `peek` is what `draw` and `poll` use: a look into a dictionary.
 from __future__ import annotations
 
 import logging
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +16,8 @@ import bpy
 
 from ..pipeline.artifacts.analysis import Finding
 from ..pipeline.errors import RoomError
+from .finish_rows import FinishState
+from .texture_rows import TextureState
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -78,6 +80,8 @@ class RoomState:
         camera_name: how the picture was taken, in words; scale_words: where the size comes from and how sure it is.
         reference_key: names the reference image, "" when there is none.
         assets: what objects look like, of the artist's asset libraries.
+        textures: the images on surfaces, and what the artist says of their sources.
+        finish: the light, and what was corrected.
         estimate: what running the stages that are left may cost, in words; spending: what was spent, and the cap.
     """
 
@@ -103,6 +107,8 @@ class RoomState:
     objects: tuple[ObjectRow, ...] = ()
     rounds: tuple[RoundRow, ...] = ()
     assets: tuple[ChosenAsset, ...] = ()
+    textures: TextureState = field(default_factory=TextureState)
+    finish: FinishState = field(default_factory=FinishState)
     has_layout: bool = False
     has_memory: bool = False
     estimate: str = ""

@@ -6,9 +6,9 @@ from __future__ import annotations
 
 def panel_classes() -> tuple[type, ...]:
     """The panels of the tab "Room"; parents before their sub-panels."""
-    from . import calibration, objects, output, reference, rounds, stages, views
+    from . import calibration, finish, objects, output, reference, rounds, stages, textures, views
 
-    modules = (reference, calibration, objects, stages, rounds, views, output)
+    modules = (reference, calibration, objects, stages, rounds, textures, finish, views, output)
     return (stages.CODE_AS_ROOM_PT_running, *(cls for module in modules for cls in module.CLASSES))
 
 

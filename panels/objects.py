@@ -9,8 +9,8 @@ import bpy
 
 from ..operators import driver, object_list, view_state
 from ..operators.view_state import RoomState
-from ..pipeline.report import words
 from ..pipeline.report_objects import ObjectRow
+from ..pipeline.report_words import words
 from .assets import draw_asset
 from .base import RoomPanel, known_operator
 from .sentences import draw_sentence, line_length, plural

@@ -16,6 +16,7 @@ from .. import __package__ as base_package
 from ..operators import clients, connection, view_state
 from ..pipeline.models.presets import PRESETS, preset
 from ..pipeline.models.routing import GROUPS
+from . import preferences_images
 from .preferences_draw import KEY_WARNING, draw_preferences
 
 __all__ = ["KEY_WARNING", "CodeAsRoomPreferences", "classes"]
@@ -105,8 +106,8 @@ class CodeAsRoomService(bpy.types.PropertyGroup):
     )
 
 
-class CodeAsRoomPreferences(bpy.types.AddonPreferences):
-    """Which model answers."""
+class CodeAsRoomPreferences(preferences_images.ImagePreferences, bpy.types.AddonPreferences):
+    """Which model answers, and which one paints."""
 
     bl_idname = base_package or "code_as_room"
 
@@ -210,4 +211,4 @@ class CodeAsRoomPreferences(bpy.types.AddonPreferences):
 
 def classes() -> tuple[type, ...]:
     """The preferences' classes."""
-    return (CodeAsRoomService, CodeAsRoomPreferences)
+    return (CodeAsRoomService, *preferences_images.CLASSES, CodeAsRoomPreferences)

@@ -9,6 +9,7 @@ from ..operators import clients, connection, view_state
 from ..pipeline.models.addresses import is_local_url
 from ..pipeline.models.presets import Preset, preset
 from ..pipeline.models.routing import GROUPS
+from .preferences_images import draw_image_preferences
 from .sentences import draw_sentence
 
 KEY_WARNING = (
@@ -24,6 +25,12 @@ def draw_preferences(preferences: Any, layout: Any, context: Any) -> None:
     """Everything."""
     layout.use_property_split = True
     layout.use_property_decorate = False
+    _draw_answers(preferences, layout, context)
+    draw_image_preferences(preferences, layout, context, KEY_WARNING)
+
+
+def _draw_answers(preferences: Any, layout: Any, context: Any) -> None:
+    """Who answers, and what that needs."""
     chosen = preset(preferences.provider)
     layout.prop(preferences, "provider")
     draw_sentence(layout, chosen.note, context, icon="INFO")

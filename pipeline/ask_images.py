@@ -7,6 +7,7 @@ import threading
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 
+from .ask import AskEvent
 from .errors import Cancelled, ModelError
 from .models.faults import ServiceError
 from .models.image_base import FINAL_KINDS, ImageClient, ImageRequest
@@ -22,19 +23,22 @@ def paint(
     client: ImageClient | None,
     kept: KeptImages | None,
     cancel: threading.Event,
-    progress: Callable[[str], None] | None = None,
+    on_event: Callable[[AskEvent], None] | None = None,
+    fresh: bool = False,
 ) -> list[Painting] | None:
     """Answer a `Paint`; None where there is no image model. Safe to call from a worker thread.
 
     Args:
         kept: where images are kept the moment they arrive, and looked for first.
+        on_event: is told what happens to each request; called from several threads.
+        fresh: paint anew what is kept.
 
     Raises:
         Cancelled: `cancel` was set; what had arrived by then is kept.
     """
     if client is None:
         return None
-    run = _Run(client, kept, cancel, progress)
+    run = _Run(client, kept, cancel, on_event or (lambda event: None), fresh)
     with ThreadPoolExecutor(max_workers=SIDE_BY_SIDE, thread_name_prefix="code-as-room-paint") as pool:
         waiting = [pool.submit(run.one, request) for request in wish.requests]
         found = [future.result() for future in waiting]
@@ -51,28 +55,35 @@ class _Run:
         client: ImageClient,
         kept: KeptImages | None,
         cancel: threading.Event,
-        progress: Callable[[str], None] | None,
+        tell: Callable[[AskEvent], None],
+        fresh: bool,
     ) -> None:
-        self._client, self._kept, self._cancel, self._progress = client, kept, cancel, progress
+        self._client, self._kept, self._cancel, self._tell, self._fresh = client, kept, cancel, tell, fresh
         self._failed = ""
 
     def one(self, request: PaintRequest) -> Painting:
         """One image: with all words, then with simple ones."""
-        problem = ""
+        problem, tries = "", 0
         for template in (request.prompt, request.simple):
             asked = ImageRequest(filled(template, request.values), request.proportions)
             known = request_hash(self._client.name, asked.text, asked.proportions)
-            before = self._kept.find(known) if self._kept else None
+            before = self._kept.find(known) if self._kept and not self._fresh else None
             if before is not None:
-                return Painting(before, self._client.name)
+                self._tell(AskEvent(request.key, "recalled", "the image that was painted before is used again"))
+                return Painting(before, self._client.name, asked=known)
             if self._failed or self._cancel.is_set():
                 return Painting(problem=self._failed)
+            tries += 1
+            self._tell(AskEvent(request.key, "asked", "an image is being painted"))
             try:
-                made = self._client.paint(asked, self._cancel, self._progress)
+                made = self._client.paint(
+                    asked, self._cancel, lambda text: self._tell(AskEvent(request.key, "progress", text))
+                )
             except Cancelled:
                 return Painting()
             except ServiceError as error:
                 problem = error.message
+                self._tell(AskEvent(request.key, "failed", problem))
                 if error.kind in FINAL_KINDS:
                     self._failed = problem
                     break
@@ -80,10 +91,13 @@ class _Run:
             except ModelError as error:
                 # Such as the spending cap: nothing was sent, and nothing will be.
                 self._failed = problem = error.message
+                self._tell(AskEvent(request.key, "failed", problem))
                 break
             if self._kept:
                 self._kept.keep(known, made.data)
-            return Painting(made.data, made.model or self._client.name, cost=made.cost)
+            self._tell(AskEvent(request.key, "answered", "an image was painted"))
+            model = made.model or self._client.name
+            return Painting(made.data, model, "", made.cost, made.seconds, tries, known)
         return Painting(problem=problem)
 
 

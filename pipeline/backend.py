@@ -62,8 +62,8 @@ class SceneBackend(Protocol):
 class Studio(Protocol):
     """A scene that can draw objects which are not in it."""
 
-    def portrait(self, shapes: Sequence[Shape], family: str, long_side: int) -> bytes:
-        """PNG of an object from its front at eye level and from above, side by side; b"" where nothing can draw."""
+    def portrait(self, shapes: Sequence[Shape], family: str, cameras: Sequence[CameraModel]) -> bytes:
+        """PNG of an object through cameras in its own frame, side by side; b"" where nothing can draw."""
         ...
 
 
@@ -88,6 +88,27 @@ class Wardrobe(Protocol):
 
     def undress(self, ids: Collection[str]) -> list[str]:
         """Take assets off these objects, so that the next build gives them their own geometry; returns which had one."""
+        ...
+
+
+@runtime_checkable
+class ImageKeeper(Protocol):
+    """A scene that keeps the images which its program shows."""
+
+    def keep_images(self, images: Mapping[str, bytes]) -> None:
+        """Keep images (PNG bytes by name) for the builds to come.
+
+        What is there under a name with other bytes is replaced wherever it is shown; what no wish asked for this time
+        stays only for as long as something shows it.
+        """
+        ...
+
+    def kept_images(self, names: Collection[str]) -> dict[str, bytes]:
+        """PNG bytes of those of these images that are there."""
+        ...
+
+    def has_images(self, names: Collection[str]) -> bool:
+        """Whether all of these images are there; cheap."""
         ...
 
 

@@ -20,11 +20,15 @@ from pydantic import BaseModel, ValidationError
 from .artifacts.analysis import Calibration, SceneAnalysis
 from .artifacts.assets import ChosenAssets
 from .artifacts.common import Artifact
+from .artifacts.correction import CorrectionReport
 from .artifacts.corrections import Corrections, Found, Rescaled
 from .artifacts.graph import MinorObjects, SceneGraph
 from .artifacts.hand import HandEdits
 from .artifacts.layout import LayoutProgram
+from .artifacts.light import LightPlan
+from .artifacts.materials import Materials, OwnFinishes
 from .artifacts.objects import Descriptions, Geometry, OwnModelling, RoomStyle
+from .artifacts.textures import TextureChoices, Textures
 from .errors import MemoryFormatError
 
 FORMAT = "code-as-room/memory/1"
@@ -45,6 +49,12 @@ KINDS: dict[str, type[Artifact]] = {
         Geometry,
         OwnModelling,
         ChosenAssets,
+        Materials,
+        OwnFinishes,
+        Textures,
+        TextureChoices,
+        LightPlan,
+        CorrectionReport,
     )
 }
 _CHUNK = 160

@@ -9,33 +9,38 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from .artifacts.analysis import Calibration, Finding, SceneAnalysis
+from .artifacts.correction import CorrectionReport
 from .artifacts.graph import SceneGraph
 from .artifacts.hand import HandEdits
-from .artifacts.layout import Iteration, LayoutEdit, LayoutProgram, LedgerEntry, ProxyLine
+from .artifacts.layout import LayoutProgram, LedgerEntry, ProxyLine
+from .artifacts.light import LightPlan
+from .artifacts.materials import Materials
 from .artifacts.surfaces import SmallObjects
+from .artifacts.textures import Textures
 from .errors import RoomError
-from .memory import Entry, Memory
+from .memory import Memory
 from .program.lines import parse_layout
-from .report_page import Column, Content, Markup, bar, element, figure, page, table, together
+from .report_finish import fixes_section, light_section, materials_section, textures_section
+from .report_page import Column, Content, Markup, contents, element, figure, heading, page, table
+from .report_scores import rounds_section
+from .report_stages import stages_table
+from .report_words import numbers, words
 from .run import StageReport
-from .stages import all_stages
 
 LAYOUT_STAGE = "s03_layout"
+RENDER = "render_"
+"""Before the ids of cameras among the report's pictures."""
 CAPTIONS = {
     "reference": "The picture",
-    "overlay": "The layout drawn over the picture",
+    RENDER + "reference": "The finished room, rendered as in the picture",
     "top": "The room through the fitted camera",
+    RENDER + "eye_1": "Rendered at eye level",
+    RENDER + "eye_2": "Rendered at eye level, from elsewhere",
+    RENDER + "top": "Rendered from above",
     "view": "The room from the side",
+    "overlay": "The layout drawn over the picture",
 }
-PARTS = {
-    "coverage": "All there",
-    "overlap": "Nothing overlaps",
-    "bounds": "Inside the room",
-    "relations": "Relations hold",
-    "boxes": "Matches the picture",
-    "clear": "Doors and windows free",
-    "support": "All is carried",
-}
+"""Every picture that is known, in the order in which they are shown."""
 _SEVERITIES = {"error": "What went wrong", "warning": "Worth a look", "note": "Repaired or noted on the way"}
 _SCALE = {
     "known width": "from the width that you gave",
@@ -50,24 +55,36 @@ def make_report(
     """The report as one HTML page, with the pictures inside it.
 
     Args:
-        pictures: PNG or JPEG bytes by name: "reference", "overlay", "top", "view"; any may be missing.
+        pictures: PNG or JPEG bytes by name: those of `CAPTIONS`, further renders as "render_" and the camera's id, and
+            textures as "texture/" and their image's name; any may be missing.
         reports: what the stages of this run took; stages of earlier runs are told from memory.
         describes: one sentence on what answers now (`ModelClient.describes`).
     """
     name = memory.picture_name or "a picture"
+    sections: list[tuple[str, str, list[Content]]] = [
+        ("materials", "Materials", materials_section(memory.latest(Materials))),
+        ("textures", "Textures", textures_section(memory.latest(Textures), pictures)),
+        ("light", "Light", light_section(memory.latest(LightPlan))),
+        ("corrections", "Corrections", fixes_section(memory.latest(CorrectionReport))),
+        ("layout", "Layout, round by round", rounds_section(memory.latest(LayoutProgram, (LAYOUT_STAGE,)))),
+        ("objects", "Objects", _objects(memory)),
+        ("stages", "Stages, time and cost", [stages_table(memory, reports)]),
+        ("findings", "Findings", _findings(memory)),
+    ]
+    sections = [section for section in sections if section[2]]
+    first, more = _figures(pictures)
     parts: list[Content] = [
         element("h1", f"Room from {name}"),
-        element("p", "What was seen, how it was placed, and what it took.", of="lead"),
-        element("p", element("strong", "Answered by: "), answered_by(memory, describes), of="answered"),
+        element("p", "What was seen, how it was built, and what it took.", of="lead"),
+        contents((anchor, title.partition(",")[0]) for anchor, title, _ in sections),
+        first,
         _facts(memory),
-        _figures(pictures),
-        element("h2", "Stages"),
-        _stages(memory, reports),
-        *_rounds(memory),
-        *_objects(memory),
-        *_findings(memory),
-        element("footer", "Made by Code-as-Room. Sizes are in metres; this page needs no network."),
+        element("p", element("strong", "Answered by: "), answered_by(memory, describes), of="answered"),
+        more,
     ]
+    for anchor, title, inside in sections:
+        parts += [heading(title, anchor), *inside]
+    parts.append(element("footer", "Made by Code-as-Room. Sizes are in metres; this page needs no network."))
     return page(f"Room from {name}", parts)
 
 
@@ -127,126 +144,18 @@ def floor_size(calibration: Calibration) -> tuple[float, float]:
 
 def _counted(ledger: Sequence[LedgerEntry]) -> str:
     states = [entry.state for entry in ledger]
-    said = [f"{states.count(s)} {s}" for s in ("placed", "deferred", "dropped") if s in states]
+    said = [f"{states.count(s)} {s}" for s in ("detailed", "placed", "deferred", "dropped") if s in states]
     return ", ".join(said)
 
 
-def _figures(pictures: Mapping[str, bytes]) -> Markup:
-    figures = [figure(pictures.get(name), caption) for name, caption in CAPTIONS.items()]
-    return element("div", *(f for f in figures if f is not None), of="pictures")
-
-
-def _stages(memory: Memory, reports: Sequence[StageReport]) -> Markup:
-    latest = {report.stage: report for report in reports}
-    columns = [Column("Stage"), *(Column(t, number=True) for t in ("Time", "Own work", "Calls", "Tokens in", "out"))]
-    columns += [Column("Cost", number=True), Column("Prompt text", number=True), Column("Notes", prose=True)]
-    rows: list[list[Content]] = []
-    totals = [0.0, 0, 0, 0, 0.0]
-    for stage in all_stages():
-        entry = memory.latest_entry(stage.writes[0].__name__, (stage.id,))
-        answers = [e for e in memory.entries if e.type == "Answer" and e.stage == stage.id]
-        if entry is None and not answers:
-            rows.append([stage.title, *("–" for _ in range(7)), element("span", "not run", of="quiet")])
-            continue
-        figures = _stage_figures(entry, answers)
-        totals = [a + b for a, b in zip(totals, figures, strict=True)]
-        seconds, calls, told, said, cost = figures
-        report = latest.get(stage.id)
-        rows.append(
-            [
-                stage.title,
-                _seconds(seconds) if entry else "–",
-                _seconds(report.own_seconds) if report else "–",
-                int(calls),
-                int(told) or "–",
-                int(said) or "–",
-                f"${cost:.4f}" if cost else "–",
-                f"{report.prompt_bytes / 1000:.1f} kB" if report and report.prompt_bytes else "–",
-                _stage_notes(entry, report),
-            ]
-        )
-    seconds, calls, told, said, cost = totals
-    total: list[Content] = ["All", _seconds(seconds), "", int(calls), int(told) or "–", int(said) or "–"]
-    rows.append([*total, f"${cost:.4f}" if cost else "–", "", ""])
-    return table(columns, rows, [*[""] * (len(rows) - 1), "sum"])
-
-
-def _stage_figures(entry: Entry | None, answers: Sequence[Entry]) -> list[float]:
-    """Seconds of the latest run; calls, tokens in and out and known cost of all answers that memory keeps."""
-    return [
-        entry.meta.seconds if entry else 0.0,
-        len(answers),
-        sum(a.meta.prompt_tokens for a in answers),
-        sum(a.meta.completion_tokens for a in answers),
-        sum(a.meta.cost or 0.0 for a in answers),
-    ]
-
-
-def _stage_notes(entry: Entry | None, report: StageReport | None) -> Content:
-    notes = list(dict.fromkeys([*(entry.meta.notes if entry else []), *(report.notes if report else ())]))
-    if entry is None:
-        notes.insert(0, "answered, but not finished")
-    if not notes:
-        return None
-    more = [f"and {len(notes) - 6} more"] if len(notes) > 6 else []
-    return together([element("div", note) for note in [*notes[:6], *more]])
-
-
-def _seconds(value: float) -> str:
-    return f"{int(value // 60)} min {value % 60:.0f} s" if value >= 60 else f"{value:.1f} s"
-
-
-def _rounds(memory: Memory) -> list[Content]:
-    program = memory.latest(LayoutProgram, (LAYOUT_STAGE,))
-    if program is None or not program.iterations:
-        return []
-    columns = [Column("Round"), Column("Score"), *(Column(title) for title in PARTS.values()), Column("Model says")]
-    rows = [_round(item, item.number == program.best) for item in program.iterations]
-    kept = ["kept" if item.number == program.best else "" for item in program.iterations]
-    explained = (
-        "Each round was built, rendered and measured; the best one was kept. Every part is between 0 and 1, "
-        "and 1 is best."
-    )
-    return [element("h2", "Layout, round by round"), element("p", explained), table(columns, rows, kept),
-            *(detail for item in program.iterations for detail in _round_details(item))]  # fmt: skip
-
-
-def _round(item: Iteration, kept: bool) -> list[Content]:
-    score = item.score
-    judged: Content = bar(score.model) if score.model is not None else "–"
-    name = f"{item.number + 1}, kept" if kept else str(item.number + 1)
-    return [name, bar(score.total), *(bar(getattr(score, part)) for part in PARTS), judged]
-
-
-def _round_details(item: Iteration) -> list[Content]:
-    """What was asked for after a round, and what of it was refused."""
-    if not (item.edits or item.refused or item.remarks):
-        return []
-    lines = [element("li", element("code", edit.id), " ", edit_words(edit)) for edit in item.edits]
-    lines += [element("li", element("code", f.about), " ", f.message, " (refused)", of="quiet") for f in item.refused]
-    remark = element("p", "“", item.remarks, "”", of="quiet") if item.remarks else None
-    return [element("h3", f"After round {item.number + 1}"), remark, element("ul", *lines) if lines else None]
-
-
-def edit_words(edit: LayoutEdit) -> str:
-    """A typed edit in plain words."""
-    done = {
-        "move": f"moved to {_numbers(edit.centre)} m",
-        "resize": f"made {_numbers(edit.size)} m",
-        "turn": f"turned to {edit.yaw or 0:.0f} degrees",
-        "add": f"added as {edit.category or 'an object'}",
-        "remove": "taken out",
-        "recategorise": f"called {edit.category or 'something else'}",
-        "rename": f"renamed to {edit.new_id or '?'}",
-        "line": "changed",
-        "reparent": f"put on {edit.parent or 'the ' + (edit.placement or 'floor')}",
-    }[edit.op]
-    resized = edit.op == "move" and edit.size is not None
-    return done + (f", made {_numbers(edit.size)} m" if resized else "") + (f": {edit.reason}" if edit.reason else "")
-
-
-def _numbers(values: Sequence[float] | None, between: str = ", ") -> str:
-    return between.join(f"{v:.2f}" for v in values) if values else "?"
+def _figures(pictures: Mapping[str, bytes]) -> tuple[Markup, Markup]:
+    """The picture beside what became of it; and all further pictures but the textures, the known ones first."""
+    others = {
+        n: f"Rendered through {n.removeprefix(RENDER)}" for n in pictures if n.startswith(RENDER) and n not in CAPTIONS
+    }
+    found = [figure(pictures.get(name), caption) for name, caption in {**CAPTIONS, **others}.items()]
+    shown = [f for f in found if f is not None]
+    return element("div", *shown[:2], of="pictures"), element("div", *shown[2:], of="pictures more")
 
 
 def _objects(memory: Memory) -> list[Content]:
@@ -270,12 +179,7 @@ def _objects(memory: Memory) -> list[Content]:
             [element("code", proxy.id), words(proxy.category), proxy.placement, added, *_place(proxy), "added later"]
         )
     intro = "Every object that was detected is here: placed, deferred to a later stage, or dropped with the reason."
-    return [element("h2", "Objects"), element("p", intro), table(columns, rows)]
-
-
-def words(category: str) -> str:
-    """A category as an artist reads it."""
-    return category.replace("_", " ")
+    return [element("p", intro), table(columns, rows)]
 
 
 def _proxies(program: LayoutProgram | None) -> dict[str, ProxyLine]:
@@ -286,7 +190,7 @@ def _proxies(program: LayoutProgram | None) -> dict[str, ProxyLine]:
 
 
 def _place(proxy: ProxyLine | None) -> list[Content]:
-    return [_numbers(proxy.size, " x "), _numbers(proxy.centre)] if proxy else ["", ""]
+    return [numbers(proxy.size, " x "), numbers(proxy.centre)] if proxy else ["", ""]
 
 
 def all_findings(memory: Memory) -> list[Finding]:
@@ -298,6 +202,9 @@ def all_findings(memory: Memory) -> list[Finding]:
         memory.latest(LayoutProgram, (LAYOUT_STAGE,)),
         memory.latest(LayoutProgram),
         memory.latest(SmallObjects),
+        memory.latest(Materials),
+        memory.latest(Textures),
+        memory.latest(LightPlan),
         memory.latest(HandEdits),
     )
     found = {(f.severity, f.about, f.message): f for a in artifacts if a is not None for f in a.findings}
@@ -308,8 +215,8 @@ def all_findings(memory: Memory) -> list[Finding]:
 def _findings(memory: Memory) -> list[Content]:
     found = all_findings(memory)
     if not found:
-        return [element("h2", "Findings"), element("p", "Nothing had to be repaired or doubted.")]
-    parts: list[Content] = [element("h2", "Findings")]
+        return [element("p", "Nothing had to be repaired or doubted.")]
+    parts: list[Content] = []
     for severity, title in _SEVERITIES.items():
         group = [f for f in found if f.severity == severity]
         if group:

@@ -7,7 +7,7 @@ import hashlib
 from dataclasses import dataclass
 
 from .artifacts.layout import Iteration, LayoutProgram
-from .report import PARTS, edit_words
+from .report_words import PARTS, edit_words
 
 
 @dataclass(frozen=True)

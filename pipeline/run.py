@@ -12,7 +12,7 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import BaseModel
 
@@ -33,11 +33,31 @@ from .program.patch import patch_text
 from .retrieval.index import Shelf
 from .run_assets import dress, find, prepare
 from .run_corrections import bring_up_to_date, corrections_of, edits_of, found_of, inputs_of, program_of
+from .run_finishes import note_own_finishes, with_own_finishes
+from .run_images import find_images, keep_images, lacks_images, note_painting
 from .run_modelling import note_own_functions
 from .run_partial import inputs_after
 from .stages import all_stages
 from .stages.base import Stage, View
-from .stages.wishes import Ask, Build, Dress, FindAssets, Portrait, PrepareAsset, Render, Tell, Wish
+from .stages.texture_wishes import Painting
+from .stages.wishes import (
+    Ask,
+    Build,
+    Dress,
+    FindAssets,
+    FindImages,
+    KeepImages,
+    Paint,
+    Portrait,
+    PrepareAsset,
+    Render,
+    Tell,
+    Wish,
+)
+from .textures.kept import KeptImages
+
+if TYPE_CHECKING:  # image services bring a lot along
+    from .models.image_base import ImageClient
 
 Status = Literal["not run", "answered", "done", "stale"]
 """What became of a stage: "answered" when every question was answered but the result is not there, as after undo;
@@ -67,6 +87,7 @@ class Run:
         cancel: set it to stop; the stage that runs ends with `Cancelled`.
         journal: where answers are kept as they arrive, whatever becomes of the scene; None for none.
         shelf: the artist's asset libraries, None for none.
+        painter: the image model, None for none; painted: where what it painted is kept on disk, None for nowhere.
     """
 
     picture: ReferencePicture
@@ -78,6 +99,8 @@ class Run:
     reports: list[StageReport] = field(default_factory=list)
     journal: AnswerJournal | None = None
     shelf: Shelf | None = None
+    painter: ImageClient | None = None
+    painted: KeptImages | None = None
     _standing: str = ""
 
     def __post_init__(self) -> None:
@@ -97,7 +120,7 @@ class Run:
         entry = self.memory.latest_entry(stage.writes[0].__name__, (stage.id,))
         inputs = self.inputs(stage)
         if entry is not None and entry.meta.inputs == inputs:
-            return "done"
+            return "stale" if lacks_images(self, stage) else "done"
         if self.journal is not None and self.journal.has_finished(stage.id, name_of(self.client, stage.id), inputs):
             return "answered"
         return "not run" if entry is None else "stale"
@@ -141,6 +164,7 @@ class Run:
         typed = hand.text_edits() if hand is not None else None
         if typed is not None:
             note_own_functions(self.memory, backend.program_text())
+            note_own_finishes(self.memory, backend.program_text())
         seen = backend.read_back()
         self._standing = backend.program_text()
         if hand is not None and self._standing:
@@ -256,7 +280,7 @@ class StageSession:
             self._client = JournalledClient(run.client, run.journal, self._inputs, fresh)
         self._started, self._asking = time.monotonic(), 0.0
         self._asked: list[AskResult] = []
-        self._rounds = 0
+        self._rounds = self._images = 0
         self._notes: list[str] = []
         self._generator = stage.run(run.view(stage, only))
         self.wish: Wish | None = None
@@ -272,11 +296,17 @@ class StageSession:
             self.close()
             raise Cancelled
         try:
-            result = self.ask(wish) if isinstance(wish, Ask) else self.act(wish)
+            result = self.answer(wish) if isinstance(wish, Ask | Paint) else self.act(wish)
         except BaseException:
             self.close()
             raise
         self.send(result)
+
+    def answer(
+        self, wish: Ask | Paint, on_event: Callable[[AskEvent], None] | None = None
+    ) -> list[BaseModel | None] | list[Painting] | None:
+        """Perform a wish that a service answers; may run in a worker thread while nothing else touches this session."""
+        return self.ask(wish, on_event) if isinstance(wish, Ask) else self.paint(wish, on_event)
 
     def ask(self, wish: Ask, on_event: Callable[[AskEvent], None] | None = None) -> list[BaseModel | None]:
         """Perform an `Ask`; may run in a worker thread while nothing else touches this session."""
@@ -294,6 +324,22 @@ class StageSession:
                 self._notes += [f"{result.key}: {note}" for note in result.notes]
         return [None if result is None else result.reply for result in results]
 
+    def paint(self, wish: Paint, on_event: Callable[[AskEvent], None] | None = None) -> list[Painting] | None:
+        """Perform a `Paint`, as `ask`; None where there is no image model. What it cost goes to memory."""
+        from .ask_images import paint
+
+        began, run = time.monotonic(), self.run
+        self._rounds += 1
+        try:
+            found = paint(wish, run.painter, run.painted, run.cancel, on_event, self._fresh)
+        finally:
+            self._asking += time.monotonic() - began
+        for request, painting in zip(wish.requests, found or (), strict=False):
+            if painting.data and painting.tries:
+                self._images += painting.tries
+                note_painting(run, self.stage.id, request, painting, self._rounds, self._inputs)
+        return found
+
     def act(self, wish: Wish) -> Any:
         """Perform a wish that needs Blender's main thread; `FindAssets` may be performed in any."""
         if isinstance(wish, Tell):
@@ -308,9 +354,13 @@ class StageSession:
             return prepare(self.run, wish)
         if isinstance(wish, Dress):
             return dress(self.run, wish)
+        if isinstance(wish, KeepImages):
+            return keep_images(self.run, wish)
+        if isinstance(wish, FindImages):
+            return find_images(self.run, wish)
         if isinstance(wish, Portrait):
             backend = self.run.backend
-            return backend.portrait(wish.shapes, wish.family, wish.long_side) if isinstance(backend, Studio) else b""
+            return backend.portrait(wish.shapes, wish.family, wish.cameras) if isinstance(backend, Studio) else b""
         raise TypeError(f"a stage wished for {type(wish).__name__}")
 
     def send(self, result: Any) -> None:
@@ -331,7 +381,7 @@ class StageSession:
             stage=self.stage.id,
             seconds=seconds,
             own_seconds=seconds - self._asking,
-            calls=sum(r.tries for r in self._asked),
+            calls=sum(r.tries for r in self._asked) + self._images,
             prompt_bytes=sum(sizes),
             largest_prompt=max(sizes, default=0),
             notes=tuple(self._notes),
@@ -340,6 +390,8 @@ class StageSession:
     def _advance(self, move: Callable[[], Wish]) -> None:
         try:
             self.wish = move()
+            if isinstance(self.wish, Build):
+                self.wish = Build(with_own_finishes(self.run.memory, self.wish.text))
         except StopIteration as stop:
             self.wish, self.finished = None, True
             self._written = stop.value

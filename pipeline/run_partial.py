@@ -72,6 +72,9 @@ def _without(artifact: BaseModel, chosen: set[str]) -> Any:
         return None
     if isinstance(artifact, LayoutProgram):
         layout = parse_layout(artifact.text)
+        if artifact.stage == "s06_geometry":
+            # What is modelled in part has small things where stage 7 put them; where they belong is not its word.
+            layout = layout.model_copy(update={"proxies": [p for p in layout.proxies if p.placement != "surface"]})
         return layout.model_copy(update={"proxies": _others(layout.proxies, chosen)})
     return artifact
 

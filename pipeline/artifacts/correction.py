@@ -35,7 +35,7 @@ class Fix(Artifact):
     message: str
 
 
-class Corrections(Artifact):
+class CorrectionReport(Artifact):
     """What one correction pass did.
 
     Attributes:

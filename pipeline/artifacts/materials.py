@@ -57,6 +57,17 @@ class Materials(Artifact):
         return next((o for o in self.objects if o.id == identifier), None)
 
 
+class OwnFinishes(Artifact):
+    """What the artist wrote of materials into the room's program: it holds against every stage.
+
+    Attributes:
+        looks: named looks that the artist wrote or changed, by name. finishes: those of objects and surfaces, by id.
+    """
+
+    looks: dict[str, str] = {}
+    finishes: dict[str, dict[str, str]] = {}
+
+
 class PaletteReply(Reply):
     """One material of the room: `name` such as "oak", `family` of the list, `color` "#RRGGBB" in neutral light."""
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -29,19 +30,20 @@ class Body:
 
     Attributes:
         own: its parts in its own frame. cloth: lies on what carries it, in its folds, and is not held against others.
+        known: what was worked out of its parts, for all objects that have the same ones and wherever they are moved.
     """
 
     line: ProxyLine
     own: Sequence[Shape]
     cloth: bool = False
-    known: dict[str, Columns | None] = field(default_factory=dict)
+    known: dict[Any, Any] = field(default_factory=dict)
 
     @property
     def id(self) -> str:
         """Of its line."""
         return self.line.id
 
-    @property
+    @functools.cached_property
     def base(self) -> Metres3:
         """Middle of its box's underside."""
         x, y, z = self.line.centre
@@ -50,8 +52,11 @@ class Body:
     @functools.cached_property
     def bounds(self) -> tuple[Floats, Floats]:
         """Lowest and highest corner of its vertices in its own frame."""
-        points = np.concatenate([s.vertices for s in self.own])
-        return points.min(axis=0), points.max(axis=0)
+        if "bounds" not in self.known:
+            points = np.concatenate([s.vertices for s in self.own])
+            self.known["bounds"] = points.min(axis=0), points.max(axis=0)
+        found: tuple[Floats, Floats] = self.known["bounds"]
+        return found
 
     @functools.cached_property
     def rect(self) -> Rect:
@@ -60,22 +65,29 @@ class Body:
         middle = turned(np.array([[*((low + high) / 2)]]), self.line.yaw, self.base)[0]
         return Rect(float(middle[0]), float(middle[1]), float(high[0] - low[0]), float(high[1] - low[1]), self.line.yaw)
 
-    @property
+    @functools.cached_property
     def low(self) -> float:
         """Height of its lowest vertex."""
         return self.base[2] + float(self.bounds[0][2])
 
-    @property
+    @functools.cached_property
     def high(self) -> float:
         """Height of its highest vertex."""
         return self.base[2] + float(self.bounds[1][2])
 
-    @property
+    @functools.cached_property
+    def box(self) -> tuple[Metres3, Metres3]:
+        """Lowest and highest corner of the upright box round its rectangle."""
+        corners = self.rect.corners()
+        (x0, y0), (x1, y1) = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
+        return (x0, y0, self.low), (x1, y1, self.high)
+
+    @functools.cached_property
     def flat(self) -> bool:
         """Whether it lies on the floor as rugs do, and others may stand on it."""
         return self.line.placement == "floor" and self.high - self.low < FLAT
 
-    @property
+    @functools.cached_property
     def soft(self) -> bool:
         """Whether it gives way where it touches, as cushions do."""
         return category_family(self.line.category) == "textile"
@@ -88,10 +100,11 @@ class Body:
     @functools.cached_property
     def columns(self) -> Columns | None:
         """Its solid seen from above, rastered once however often it is moved."""
-        if "" not in self.known:
+        key = "columns", self.line.yaw
+        if key not in self.known:
             own = [replace(s, vertices=turned(s.vertices, self.line.yaw, (0.0, 0.0, 0.0))) for s in self.own]
-            self.known[""] = columns_of(own)
-        found = self.known[""]
+            self.known[key] = columns_of(own)
+        found: Columns | None = self.known[key]
         return found.moved(*self.base) if found is not None else None
 
     def moved(self, centre: Metres3) -> Body:
@@ -168,10 +181,12 @@ def _shifted(at: Metres3, shift: Floats) -> Metres3:
 
 def room_of(layout: Layout, record: Record, pictures: frozenset[str] | None = None) -> Room:
     """The room of a text's lines and what it was evaluated to."""
-    bodies = {
-        p.id: Body(p, record.furnished.get(p.id) or proxy_shapes(p.model_dump()), p.id in record.plain or _drapes(p))
-        for p in layout.proxies
-    }
+    alike: dict[tuple[int, ...], dict[Any, Any]] = {}
+    bodies = {}
+    for p in layout.proxies:
+        own = record.furnished.get(p.id) or proxy_shapes(p.model_dump())
+        known = alike.setdefault(tuple(id(shape) for shape in own), {})
+        bodies[p.id] = Body(p, own, p.id in record.plain or _drapes(p), known)
     partitions = tuple(_partition(w) for w in layout.walls if w.partition)
     return Room(layout, bodies, partitions, record, pictures)
 

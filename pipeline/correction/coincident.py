@@ -29,22 +29,49 @@ _STEPS = (1, -1, 2, -2)
 
 @dataclass(frozen=True)
 class Faces:
-    """A thing's larger faces in the room's frame: unit normals (N, 3), offsets (N,), corners."""
+    """A thing's larger faces in the room's frame: unit normals (N, 3), offsets (N,), and their corners.
+
+    Attributes:
+        points: the corners of all faces, one face after the other, (M, 3); lengths: how many each face has, (N,).
+    """
 
     normals: Floats
     offsets: Floats
-    corners: list[Floats]
+    points: Floats
+    lengths: NDArray[np.int64]
+
+    @functools.cached_property
+    def starts(self) -> NDArray[np.int64]:
+        """The first corner of each face."""
+        found: NDArray[np.int64] = np.cumsum(self.lengths) - self.lengths
+        return found
+
+    def corners(self, face: int) -> Floats:
+        """The corners of one face."""
+        start = int(self.starts[face])
+        return self.points[start : start + int(self.lengths[face])]
 
     @functools.cached_property
     def bounds(self) -> tuple[Floats, Floats]:
         """Lowest and highest corner of each face, (N, 3) each."""
-        low = np.array([c.min(axis=0) for c in self.corners]).reshape(-1, 3)
-        return low, np.array([c.max(axis=0) for c in self.corners]).reshape(-1, 3)
+        if not len(self.lengths):
+            return np.zeros((0, 3)), np.zeros((0, 3))
+        return np.minimum.reduceat(self.points, self.starts), np.maximum.reduceat(self.points, self.starts)
+
+    @functools.cached_property
+    def box(self) -> tuple[Floats, Floats]:
+        """Lowest and highest corner of all faces, with what counts as one plane."""
+        return self.bounds[0].min(axis=0) - SAME, self.bounds[1].max(axis=0) + SAME
 
     def near(self, other: Faces) -> NDArray[np.int64]:
         """Indices of the faces that come to the box round another thing's faces."""
-        low, high = other.bounds[0].min(axis=0) - SAME, other.bounds[1].max(axis=0) + SAME
+        low, high = other.box
         return np.flatnonzero(((self.bounds[0] <= high) & (self.bounds[1] >= low)).all(axis=1))
+
+    def only(self, kept: NDArray[np.bool_]) -> Faces:
+        """Some of the faces."""
+        points = self.points[np.repeat(kept, self.lengths)]
+        return Faces(self.normals[kept], self.offsets[kept], points, self.lengths[kept])
 
 
 def find(room: Room, knowledge: Knowledge) -> list[Fault]:
@@ -53,8 +80,8 @@ def find(room: Room, knowledge: Knowledge) -> list[Fault]:
     shell = _shell(room)
     known = {b.id: _faces_of(b, shell, knowledge) for b in bodies}
     found = []
-    low = np.array([_low(b) for b in bodies]).reshape(-1, 3)
-    high = np.array([_high(b) for b in bodies]).reshape(-1, 3)
+    boxes = [b.box for b in bodies]
+    low, high = (np.array([box[k] for box in boxes]).reshape(-1, 3) for k in (0, 1))
     for i, body in enumerate(bodies):
         meets = ((low[i + 1 :] <= high[i] + SAME) & (high[i + 1 :] >= low[i] - SAME)).all(axis=1)
         for j in np.flatnonzero(meets):
@@ -96,25 +123,17 @@ def fix(room: Room, fault: Fault, knowledge: Knowledge) -> Iterator[Mend]:
             yield moved(room, body.id, (x, y, z), said)
 
 
-def _low(body: Body) -> tuple[float, float, float]:
-    corners = body.rect.corners()
-    return float(corners[:, 0].min()), float(corners[:, 1].min()), body.low
-
-
-def _high(body: Body) -> tuple[float, float, float]:
-    corners = body.rect.corners()
-    return float(corners[:, 0].max()), float(corners[:, 1].max()), body.high
-
-
 def _faces_of(body: Body, shell: dict[str, Faces], knowledge: Knowledge) -> Faces:
     """The larger flat faces of a body, where it is, that can be seen."""
 
     def make() -> Faces:
-        own: Faces = knowledge.remember(("faces", body.id), lambda: _own_faces(body))
+        if "faces" not in body.known:
+            body.known["faces"] = _own_faces(body)
+        own: Faces = body.known["faces"]
         normals = turned(own.normals, body.line.yaw, (0.0, 0.0, 0.0))
-        corners = [turned(c, body.line.yaw, body.base) for c in own.corners]
-        offsets = np.array([float(n @ c[0]) for n, c in zip(normals, corners, strict=True)])
-        return _seen(Faces(normals, offsets, corners), shell)
+        points = turned(own.points, body.line.yaw, body.base)
+        offsets = (normals * points[own.starts]).sum(axis=1)
+        return _seen(Faces(normals, offsets, points, own.lengths), shell)
 
     found: Faces = knowledge.remember(("faces", body.id, body.line.centre), make)
     return found
@@ -127,30 +146,31 @@ def _seen(faces: Faces, shell: dict[str, Faces]) -> Faces:
     seen = faces.normals[:, 2] > -0.9
     for wall in shell.values():
         seen &= (faces.normals @ wall.normals[0] > -0.99) | (np.abs(faces.offsets + wall.offsets[0]) > HIDDEN)
-    return Faces(faces.normals[seen], faces.offsets[seen], [c for c, s in zip(faces.corners, seen, strict=True) if s])
+    return faces.only(seen)
 
 
 def _own_faces(body: Body) -> Faces:
-    normals, corners = [], []
-    for shape in body.own:
-        by_length: dict[int, list[tuple[int, ...]]] = {}
-        for face in shape.faces:
-            by_length.setdefault(len(face), []).append(face)
-        for faces in by_length.values():
-            points = shape.vertices[np.array(faces)]
-            # Newell's normal: half the sum of the cross products of following corners.
-            cross = np.cross(points, np.roll(points, -1, axis=1)).sum(axis=1) / 2
-            area = np.linalg.norm(cross, axis=1)
-            for k in np.flatnonzero(area > LEAST_FACE):
-                normals.append(cross[k] / area[k])
-                corners.append(points[k])
-    return Faces(np.array(normals).reshape(-1, 3), np.zeros(len(corners)), corners)
+    flat = [shape.corners for shape in body.own if shape.faces]
+    points = np.concatenate([np.zeros((0, 3)), *(s.vertices[s.corners[0]] for s in body.own if s.faces)])
+    lengths = np.concatenate([np.zeros(0, dtype=np.int64), *(found for _, found in flat)])
+    if not len(lengths):
+        return Faces(np.zeros((0, 3)), np.zeros(0), points, lengths)
+    starts = np.cumsum(lengths) - lengths
+    ahead = np.arange(1, len(points) + 1)
+    ahead[starts + lengths - 1] = starts
+    # Newell's normal: half the sum of the cross products of following corners.
+    here = points - np.repeat(points[starts], lengths, axis=0)
+    cross = np.add.reduceat(np.cross(here, here[ahead]), starts) / 2
+    area = np.linalg.norm(cross, axis=1)
+    large = area > LEAST_FACE
+    every = Faces(cross / np.maximum(area, 1e-30)[:, None], np.zeros(len(lengths)), points, lengths)
+    return every.only(large)
 
 
 def _shell(room: Room) -> dict[str, Faces]:
     """The floor and the inner faces of the walls that bound the room."""
     floor = np.array([(x, y, 0.0) for x, y in room.layout.room.floor])
-    found = {"floor": Faces(np.array([[0.0, 0.0, 1.0]]), np.zeros(1), [floor])}
+    found = {"floor": Faces(np.array([[0.0, 0.0, 1.0]]), np.zeros(1), floor, np.array([len(floor)]))}
     for wall in room.layout.walls:
         if wall.partition:
             continue
@@ -158,7 +178,7 @@ def _shell(room: Room) -> dict[str, Faces]:
         length = max(1e-9, float(np.hypot(bx - ax, by - ay)))
         normal = np.array((-(by - ay) / length, (bx - ax) / length, 0.0))
         face = np.array([(ax, ay, 0.0), (bx, by, 0.0), (bx, by, wall.height), (ax, ay, wall.height)])
-        found[wall.id] = Faces(normal[None], np.array([float(normal @ face[0])]), [face])
+        found[wall.id] = Faces(normal[None], np.array([float(normal @ face[0])]), face, np.array([4]))
     return found
 
 
@@ -173,7 +193,7 @@ def _pairs(a: Faces, b: Faces) -> list[tuple[int, int]]:
 
 def _shared(a: Faces, b: Faces) -> float:
     """Square metres that faces of one share with faces of the other in one plane; 0 below `LEAST_SHARED`."""
-    total = sum(_area(a.corners[i], b.corners[j], a.normals[i]) for i, j in _pairs(a, b))
+    total = sum(_area(a.corners(i), b.corners(j), a.normals[i]) for i, j in _pairs(a, b))
     return total if total > LEAST_SHARED else 0.0
 
 
@@ -188,7 +208,7 @@ def _area(one: Floats, other: Floats, normal: Floats) -> float:
 
 def _common_normals(a: Faces, b: Faces) -> list[Floats]:
     """The directions, at most three and each without its opposite, of planes in which two things share area; most first."""
-    areas = sorted(((_area(a.corners[i], b.corners[j], a.normals[i]), i) for i, j in _pairs(a, b)), reverse=True)
+    areas = sorted(((_area(a.corners(i), b.corners(j), a.normals[i]), i) for i, j in _pairs(a, b)), reverse=True)
     found: list[Floats] = []
     for area, i in areas:
         if (area > 0.0 or not found) and len(found) < 3 and all(abs(a.normals[i] @ f) < 0.99 for f in found):

@@ -12,7 +12,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 
 from ..artifacts.analysis import Finding
-from ..artifacts.correction import FAULT_KINDS, Corrections, FaultKind, Fix
+from ..artifacts.correction import FAULT_KINDS, CorrectionReport, FaultKind, Fix
 from ..artifacts.layout import Layout, LayoutEdit
 from ..errors import ProgramError
 from ..program.evaluate import evaluate
@@ -46,15 +46,21 @@ class Options:
 
     Attributes:
         off: kinds that are found and reported but not mended. locked: ids that are never changed.
+        spared: (kind, id) of single things that are not changed for a fault of that kind.
         pictures: names of the images that exist, None where that is not known.
         swings: for doors, "in" where the leaf comes into the room. reference: cameras that show the picture's own view.
     """
 
     off: frozenset[FaultKind] = frozenset()
     locked: frozenset[str] = frozenset()
+    spared: frozenset[tuple[str, str]] = frozenset()
     pictures: frozenset[str] | None = None
     swings: Mapping[str, str] = field(default_factory=dict)
     reference: frozenset[str] = frozenset({"reference"})
+
+    def leaves(self, fault: Fault) -> bool:
+        """Whether a fault is not to be mended."""
+        return fault.kind in self.off or (fault.kind, fault.id) in self.spared
 
 
 @dataclass(frozen=True)
@@ -63,7 +69,7 @@ class Corrected:
 
     text: str
     edits: list[LayoutEdit]
-    report: Corrections
+    report: CorrectionReport
 
 
 def find_faults(text: str, options: Options | None = None, record: Record | None = None) -> list[Fault]:
@@ -88,7 +94,7 @@ def correct(text: str, options: Options | None = None, record: Record | None = N
     """
     options = options or Options()
     record = record or evaluate(text, FINISHED_ROOM_LIMITS)
-    report = Corrections(off=[kind for kind in FAULT_KINDS if kind in options.off])
+    report = CorrectionReport(off=[kind for kind in FAULT_KINDS if kind in options.off])
     text, record = _mend_looks(text, record, options, report)
     before = parse_layout(text)
     room = _mend_places(room_of(before, record, options.pictures), options, report)
@@ -110,10 +116,10 @@ def _placed_faults(room: Room, knowledge: Knowledge) -> list[Fault]:
     return [fault for find, _ in PLACED.values() for fault in find(room, knowledge)]
 
 
-def _mend_looks(text: str, record: Record, options: Options, report: Corrections) -> tuple[str, Record]:
+def _mend_looks(text: str, record: Record, options: Options, report: CorrectionReport) -> tuple[str, Record]:
     """Materials and images, in the text: all at once where that goes well, else one by one."""
     faults = _look_faults(record, options)
-    wanted = [f for f in faults if f.kind not in options.off and f.id not in options.locked]
+    wanted = [f for f in faults if not options.leaves(f) and f.id not in options.locked]
     for fault in faults:
         if fault not in wanted:
             report.left.append(_left(fault, options))
@@ -173,20 +179,20 @@ def _with_looks(text: str, record: Record, faults: list[Fault], options: Options
     return new, after, fixes
 
 
-def _mend_places(room: Room, options: Options, report: Corrections) -> Room:
+def _mend_places(room: Room, options: Options, report: CorrectionReport) -> Room:
     """One mend after the other until none helps any more."""
     knowledge = _knowledge(options)
     faults = _placed_faults(room, knowledge)
     vain: set[tuple[str, str, str]] = set()
     since = False
     while True:
-        fault = next((f for f in faults if f.kind not in options.off and f.key not in vain), None)
+        fault = next((f for f in faults if not options.leaves(f) and f.key not in vain), None)
         if fault is None:
             if not since:
                 break
             vain, since = set(), False
             continue
-        found = _first_good(room, fault, faults, knowledge)
+        found = _first_good(room, fault, faults, knowledge, options)
         if found is None:
             vain.add(fault.key)
             continue
@@ -197,13 +203,15 @@ def _mend_places(room: Room, options: Options, report: Corrections) -> Room:
     return room
 
 
-def _first_good(room: Room, fault: Fault, faults: list[Fault], knowledge: Knowledge) -> tuple[Mend, list[Fault]] | None:
+def _first_good(
+    room: Room, fault: Fault, faults: list[Fault], knowledge: Knowledge, options: Options
+) -> tuple[Mend, list[Fault]] | None:
     """The first mend that takes its fault away, leaves what is locked and makes nothing worse; and the faults after it."""
     known = {f.key: f.amount for f in faults}
     for number, mend in enumerate(PLACED[fault.kind][1](room, fault, knowledge)):
         if number >= MOST_TRIALS:
             break
-        if _changed_ids(room.layout, mend.room.layout) & knowledge.locked:
+        if _changed_ids(room.layout, mend.room.layout) & knowledge.locked or (fault.kind, mend.id) in options.spared:
             continue
         after = _placed_faults(mend.room, knowledge)
         if any(f.key == fault.key or f.amount > known.get(f.key, 0.0) + _WORSE for f in after):
@@ -256,6 +264,8 @@ def _left(fault: Fault, options: Options) -> Finding:
     """Why a fault stays, in a sentence."""
     if fault.kind in options.off:
         why = "This kind of correction is switched off."
+    elif options.leaves(fault):
+        why = "You keep it as it is."
     elif _held(fault, options.locked):
         why = "It is locked, so it was left."
     else:

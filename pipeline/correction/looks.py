@@ -60,6 +60,12 @@ def find_lost_pictures(record: Record, pictures: frozenset[str] | None) -> list[
     return list(found.values())
 
 
+def pictures_of(record: Record) -> frozenset[str]:
+    """Names of all images that the finishes of a room show."""
+    looks = [look for finish in record.finishes.values() for look in finish.values()]
+    return frozenset(_pictures(value for look in looks for _, value in look.inputs))
+
+
 def _pictures(values: Iterable[Any]) -> Iterator[str]:
     """Names of images in values and the maps that these are made of."""
     for value in values:

@@ -14,6 +14,8 @@ import numpy as np
 
 from ..artifacts.common import Metres3
 from ..geometry.placement import Rect, is_inside, penetration, push_inside, support
+from ..geometry.polygon import ensure_ccw
+from ..light.space import inside
 from ..surfaces.find import Surface, support_surfaces
 from ..surfaces.seat import find_seat, occupied
 from .bodies import Body, Room
@@ -52,7 +54,7 @@ def _on_floor(room: Room, body: Body, knowledge: Knowledge) -> Iterator[Metres3]
     shifts = _shifts(room, body, knowledge)
     near = [shift for shift in shifts if math.hypot(*shift) <= BY_MESH]
     given = 0
-    for dx, dy in [*near, *_clear(body.rect, shifts[len(near) :], bars)]:
+    for dx, dy in _maybe_inside(body.rect, [*near, *_clear(body.rect, shifts[len(near) :], bars)], room):
         if not is_inside(body.rect.moved(dx, dy), room.layout.room.floor):
             continue
         there = body.moved((x + dx, y + dy, z))
@@ -75,6 +77,16 @@ def _clear(rect: Rect, shifts: list[tuple[float, float]], bars: list[tuple[Rect,
             apart = np.abs((moves + (rect.x - bar.x, rect.y - bar.y)) @ np.array(axis))
             deepest = np.minimum(deepest, support(rect, axis) + support(bar, axis) - apart)
         good &= deepest <= most
+    return [shift for shift, fits in zip(shifts, good, strict=True) if fits]
+
+
+def _maybe_inside(rect: Rect, shifts: list[tuple[float, float]], room: Room) -> list[tuple[float, float]]:
+    """The moves without those after which a corner is clearly outside of the room, all at once."""
+    slim = rect._replace(width=max(0.0, rect.width - 2 * _GRACE), depth=max(0.0, rect.depth - 2 * _GRACE))
+    moves, outline = np.array(shifts).reshape(-1, 2), np.array(ensure_ccw(room.layout.room.floor))
+    good = np.ones(len(moves), dtype=bool)
+    for corner in slim.corners():
+        good &= inside(outline, moves + corner)
     return [shift for shift, fits in zip(shifts, good, strict=True) if fits]
 
 

@@ -58,11 +58,16 @@ class Deciding:
         alike = _alike(layout, descriptions, functions)
         cells: dict[str, list[Cell]] = {name: [Cell("", name, 1.0)] for name in shell}
         choices = {name: [choice] for name, choice in shell.items()}
+        weighed: dict[tuple[bool, tuple[int, ...]], list[Cell]] = {}
         for proxy in layout.proxies:
             made = shapes.get(proxy.id)
             if not made:
                 continue
-            cells[proxy.id] = cells_of(made, proxy.placement == "wall")
+            # Things that are alike share their shapes.
+            key = proxy.placement == "wall", tuple(id(shape) for shape in made)
+            if key not in weighed:
+                weighed[key] = cells_of(made, proxy.placement == "wall")
+            cells[proxy.id] = list(weighed[key])
             described = alike[proxy.id]
             colours = part_colours(cells[proxy.id], described)
             family = category_family(proxy.category)

@@ -101,6 +101,8 @@ def shell_choices(layout: Layout, colours: ShellColours) -> dict[str, Choice]:
     found["ceiling"] = Choice(
         "plaster", "F7F5F1", word="ceiling_paint", why="the picture does not show it", source="usual"
     )
+    if layout.doors:
+        found["doors"] = Choice("painted_wood", "EBE7DF", word="door_paint", why="usual doors", source="usual")
     return found
 
 

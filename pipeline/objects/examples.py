@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from ..artifacts.layout import ProxyLine
@@ -13,6 +14,9 @@ from .choose import candidates
 MOST = 2
 LONGEST = 4_200
 """Characters of one example, helpers included; longer pieces teach little for their price."""
+_FITTED = re.compile(r"^( +)return fill\((.*), size\)$", re.MULTILINE)
+_CALLED = re.compile(r"(?<!def )\bfill\(")
+_DEFINED = re.compile(r"^def fill\(.*?\n\n\n", re.MULTILINE | re.DOTALL)
 
 
 def nearest_programs(proxies: Sequence[ProxyLine], most: int = MOST) -> str:
@@ -31,4 +35,10 @@ def nearest_programs(proxies: Sequence[ProxyLine], most: int = MOST) -> str:
     if not chosen:
         fitting = (d.name for d in catalogue.definitions().values() if d.name in catalogue.pieces())
         chosen = [name for name in fitting if 1500 < len(catalogue.source([name])) <= LONGEST][:1]
-    return catalogue.source(chosen)
+    return without_fitting(catalogue.source(chosen))
+
+
+def without_fitting(source: str) -> str:
+    """Library programs without the `fill` that lets them take any size: what a model writes is not to use it."""
+    plain = _FITTED.sub(r"\1return \2", source)
+    return plain if _CALLED.search(plain) else _DEFINED.sub("", plain)

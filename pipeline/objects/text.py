@@ -17,7 +17,7 @@ from ..library import catalogue
 from ..program.finishes import present_names, without_finishes_of_nothing
 from ..program.limits import FINISHED_ROOM_LIMITS
 from ..program.lines import LINE_TYPES, called_name, print_layout
-from ..program.parse_safe import parse
+from ..program.parse_safe import names_read, parse
 from ..program.prelude.registry import RESERVED
 
 END = "build()\n"
@@ -74,7 +74,7 @@ def read_modelling(text: str) -> Modelling:
         source = "".join(lines[node.lineno - 1 : node.end_lineno]).rstrip()
         if isinstance(node, ast.FunctionDef):
             found.defs[node.name] = source
-            found.uses[node.name] = names_used(node)
+            found.uses[node.name] = _names_used(node, source)
         elif called_name(node) == "furnish" and isinstance(node, ast.Expr) and isinstance(node.value, ast.Call):
             _read_furnish(found, node.value, source)
         elif called_name(node) not in (*LINE_TYPES, "build"):
@@ -82,9 +82,12 @@ def read_modelling(text: str) -> Modelling:
     return found
 
 
-def names_used(node: ast.AST) -> frozenset[str]:
-    """All names that are read in a piece of a program."""
-    return frozenset(n.id for n in ast.walk(node) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load))
+def _names_used(node: ast.FunctionDef, source: str) -> frozenset[str]:
+    """All names that a def reads; its text is remembered, since rooms are read after every change."""
+    try:
+        return names_read(source)
+    except SyntaxError:  # rows counted in another way, as after a line separator in a comment
+        return frozenset(n.id for n in ast.walk(node) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load))
 
 
 def _read_furnish(found: Modelling, call: ast.Call, source: str) -> None:

@@ -35,9 +35,10 @@ def seen_from_above(shapes: Sequence[Shape]) -> dict[str, float]:
     low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
     cells = np.clip(((points[:, :2] - low) / np.maximum(high - low, 1e-6) * _CELLS).astype(int), 0, _CELLS - 1)
     flat = cells[:, 0] * _CELLS + cells[:, 1]
-    order = np.lexsort((points[:, 2], flat))
-    flat, roles = flat[order], roles[order]
-    tops = roles[np.append(flat[1:] != flat[:-1], True)]
+    order = np.argsort(points[:, 2], kind="stable")
+    tops = np.full(_CELLS * _CELLS, -1)
+    tops[flat[order]] = roles[order]  # of the points of a cell the highest one is written last
+    tops = tops[tops >= 0]
     names = list(dict.fromkeys(split_role(shape.material)[0] for shape in shapes))
     counts = np.bincount(tops, minlength=len(names))
     return {name: float(count / counts.sum()) for name, count in zip(names, counts, strict=True) if count}
@@ -46,28 +47,36 @@ def seen_from_above(shapes: Sequence[Shape]) -> dict[str, float]:
 def _top_samples(shapes: Sequence[Shape]) -> tuple[Any, Any]:
     """Points spread over all faces that look up, and the number of the role that each belongs to."""
     names = list(dict.fromkeys(split_role(shape.material)[0] for shape in shapes))
-    spots, roles = [], []
-    extent = (
-        np.ptp(np.concatenate([s.vertices[:, :2] for s in shapes if len(s.vertices)]), axis=0) if shapes else (1, 1)
-    )
-    cell = max(float(extent[0] * extent[1]), 1e-6) / _CELLS**2
-    for shape in shapes:
-        corners = [(f[0], f[i], f[i + 1]) for f in shape.faces for i in range(1, len(f) - 1)]
-        if not corners:
-            continue
-        a, b, c = (shape.vertices[[t[k] for t in corners]] for k in range(3))
-        up = 0.5 * ((b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0]))
-        count = np.where(up > 0, np.clip(np.ceil(2.0 * up / cell), 1, 4000), 0).astype(int)
-        which = np.repeat(np.arange(len(corners)), count)
-        step = np.arange(len(which))
-        u, v = (step * 0.7548776662) % 1.0, (step * 0.5698402910) % 1.0
-        over = u + v > 1
-        u, v = np.where(over, 1 - u, u), np.where(over, 1 - v, v)
-        spots.append(a[which] + u[:, None] * (b - a)[which] + v[:, None] * (c - a)[which])
-        roles.append(np.full(len(which), names.index(split_role(shape.material)[0])))
-    if not spots:
+    numbers = {name: number for number, name in enumerate(names)}
+    meshes = [shape for shape in shapes if shape.faces]
+    if not meshes:
         return np.zeros((0, 3)), np.zeros(0, dtype=int)
-    return np.concatenate(spots), np.concatenate(roles)
+    extent = np.ptp(np.concatenate([s.vertices[:, :2] for s in shapes if len(s.vertices)]), axis=0)
+    cell = max(float(extent[0] * extent[1]), 1e-6) / _CELLS**2
+    points = np.concatenate([shape.vertices for shape in meshes])
+    offsets = np.cumsum([0, *(len(shape.vertices) for shape in meshes)])
+    fans = [_fan(shape) for shape in meshes]
+    corners = np.concatenate([fan + start for fan, start in zip(fans, offsets, strict=False)])
+    whose = np.repeat([numbers[split_role(shape.material)[0]] for shape in meshes], [len(fan) for fan in fans])
+    a, b, c = (points[corners[:, k]] for k in range(3))
+    up = 0.5 * ((b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0]))
+    count = np.where(up > 0, np.clip(np.ceil(2.0 * up / cell), 1, 4000), 0).astype(int)
+    which = np.repeat(np.arange(len(corners)), count)
+    # Each shape's points begin the same sequence anew.
+    shape_of = np.repeat(np.arange(len(meshes)), [len(fan) for fan in fans])[which]
+    step = np.arange(len(which)) - np.searchsorted(shape_of, shape_of)
+    u, v = (step * 0.7548776662) % 1.0, (step * 0.5698402910) % 1.0
+    over = u + v > 1
+    u, v = np.where(over, 1 - u, u), np.where(over, 1 - v, v)
+    return a[which] + u[:, None] * (b - a)[which] + v[:, None] * (c - a)[which], whose[which]
+
+
+def _fan(shape: Shape) -> Any:
+    """The faces as triangles round their first corners, (N, 3) vertex numbers."""
+    corners, lengths = shape.corners
+    starts = np.repeat(np.cumsum(lengths) - lengths, np.maximum(lengths - 2, 0))
+    within = np.arange(len(starts)) - np.searchsorted(starts, starts)
+    return np.stack([corners[starts], corners[starts + within + 1], corners[starts + within + 2]], axis=1)
 
 
 def tints_for(seen: Mapping[str, float], described: ObjectDescription) -> dict[str, str]:

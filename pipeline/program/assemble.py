@@ -1,31 +1,42 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""room.py: the prelude as text, the marker, and the room. Joined here, and taken apart again."""
+"""room.py: what of the prelude the room needs, the marker, and the room. Joined here, and taken apart again."""
 
 from __future__ import annotations
 
 import functools
+import re
+from collections.abc import Collection
 from pathlib import Path
 
 from ..errors import ProgramError
+from .finished import finished
 from .joiner import join_modules
 from .prelude import registry
+from .selection import Piece, Pieces, global_names
+from .trimming import trimmed, with_short_docs
 
 MARKER = "# ==== room ===="
 """The line between the prelude and the room."""
+MOST_BYTES = 300_000
+"""A longer room.py does without the docstrings of the prelude's own functions."""
 
 _HERE = Path(__file__).resolve().parent
 _MADE = {**registry.CONSTRUCTORS, **registry.LOOKS}
-_REALISE = _HERE.parent / "scene" / "realise.py"
+_FRESH = _HERE.parent / "scene" / "fresh.py"
+_PUBLIC = frozenset({*registry.CONSTANTS, *registry.MATH, *_MADE, *registry.LINE_NAMES})
 
 _HEADER = '''# SPDX-License-Identifier: GPL-3.0-or-later
+# The functions of the objects are as their authors wrote them; rules of style do not apply to those.
+# ruff: noqa: B007, B023, C416, E731, FURB136, PLR1716, RUF007, RUF046, RUF059, RUF100
 """A room as a program, made with Code-as-Room for Blender.
 
 Run it in Blender 4.5 or later, with no add-on: `blender --background --python room.py`, or open it in the Text Editor
-and press Run Script. It makes the room in a collection of its own and touches nothing else.
+and press Run Script. It makes the room in a collection of its own and touches nothing else; what you changed by hand
+since the last run stays as it is.
 
 Below the line with "room" between equals signs is the room itself, and that is the part to edit: one line for each
 wall, opening, object, light and camera (metres, Z up, yaw in degrees, 0 faces -Y), then functions that model objects.
-Above it is the prelude, which is the same in every room: the functions that a room is written with.
+Above it is the prelude: of the functions that a room can be written with, those that this room uses.
 
 Licence: the prelude is part of Code-as-Room, GPL-3.0-or-later. The room is the work of the artist who made it.
 """
@@ -34,34 +45,60 @@ from __future__ import annotations
 
 '''
 
-_BUILD = '''def build() -> None:
+_BUILD = '''def build():
     """Check the room and make it in Blender. The last statement of a room."""
     _recorder.build()
-    for _note in {realise}(_recorder.record) or ():
+    for _note in {make}(_recorder.record) or ():
         print(_note)
 '''
 
 
-@functools.lru_cache(maxsize=1)
 def prelude_text() -> str:
-    """The prelude as the text of one module: header, constructors, the room's shell, and the making of Blender data."""
+    """The whole prelude as the text of one module: all that a room can be written with."""
+    return _prelude(_PUBLIC, True)
+
+
+@functools.lru_cache(maxsize=2)
+def _pieces(docs: bool) -> Pieces:
+    """The whole prelude, taken apart. With `docs`, its own functions keep what their docstrings begin with."""
+    return Pieces.of(with_short_docs(_joined(), {*_PUBLIC, "build"}, docs), docs)
+
+
+@functools.lru_cache(maxsize=1)
+def _joined() -> str:
     roots = [_HERE / "prelude" / "recorder.py"]
     roots += [_HERE / "prelude" / f"{_module(name)}.py" for name in _MADE]
-    public = {(_module(name), name) for name in _MADE}
-    body, names = join_modules([*dict.fromkeys(roots), _REALISE], public)
+    body, names = join_modules([*dict.fromkeys(roots), _FRESH], {(_module(name), name) for name in _MADE})
     title = "# ---- what a room is written with "
-    lines = [
-        title + "-" * (100 - len(title)),
-        "",
-        "from math import (",
-        *(f"    {name}," for name in registry.MATH),
-        ")",
-    ]
-    lines += ["", *(f"{name} = {value!r}" for name, value in registry.CONSTANTS.items())]
+    lines = [title + "-" * (72 - len(title)), ""]
+    lines += [f"{name} = {value!r}" for name, value in registry.CONSTANTS.items()]
     lines += [f"_recorder = {names['recorder', 'Recorder']}()"]
     lines += [f"{name} = _recorder.{name}" for name in registry.LINE_NAMES if name != "build"]
-    build = _BUILD.format(realise=names["realise", "realise_record"])
-    return "\n".join([_HEADER + body, "", *lines, "", "", build])
+    return trimmed("\n".join([body, "", *lines, "", "", _BUILD.format(make=names["fresh", "make_record"])]))
+
+
+@functools.lru_cache(maxsize=8)
+def _prelude(used: frozenset[str], docs: bool) -> str:
+    """What rooms need that use these names."""
+    pieces = _pieces(docs)
+    needed = pieces.needed([*used, "build"])
+    imports = {at for at in needed if _is_import(pieces.items[at])}
+    return _HEADER + _imports(pieces.text(imports), used) + "\n\n" + pieces.text(needed - imports)
+
+
+def _is_import(item: object) -> bool:
+    return isinstance(item, Piece) and item.text.startswith(("import ", "from "))
+
+
+def _imports(text: str, used: Collection[str]) -> str:
+    """Import statements in order: Python's own, then numpy and Blender's; plain ones before those from a module."""
+    statements = [line for line in text.split("\n") if line]
+    functions = sorted(set(registry.MATH) & set(used))
+    if functions:
+        statements.append("\n".join(["from math import (", *(f"    {name}," for name in functions), ")"]))
+    foreign = [s for s in statements if s.split()[1].partition(".")[0] in ("bpy", "numpy")]
+    groups = ([s for s in statements if s not in foreign], foreign)
+    return "\n\n".join("\n".join(sorted(g, key=lambda s: (s.startswith("from"), s.split()[1]))) for g in groups)
 
 
 def _module(name: str) -> str:
@@ -70,8 +107,31 @@ def _module(name: str) -> str:
 
 
 def assemble(room_text: str) -> str:
-    """The whole room.py: prelude, marker, room. Plain Python with bpy runs it."""
-    return f"{prelude_text()}\n\n{MARKER}\n{room_text}"
+    """The whole room.py: prelude, marker, and the room as it is. Plain Python with bpy runs it.
+
+    What a room needs is found in its text; one that is not Python gets the whole prelude.
+    """
+    try:
+        used = frozenset(global_names(room_text) & _PUBLIC)
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        used = _PUBLIC
+    whole = f"{_prelude(used, True)}\n\n{MARKER}\n{room_text}"
+    if len(whole) <= MOST_BYTES and len(whole.encode("utf-8", "replace")) <= MOST_BYTES:
+        return whole
+    return f"{_prelude(used, False)}\n\n{MARKER}\n{room_text}"
+
+
+def assemble_file(room_text: str) -> str:
+    """The whole room.py as it is handed out: the same room in fewer words (see `finished`)."""
+    return assemble(finished(room_text))
+
+
+def is_assembled(full_text: str) -> bool:
+    """Whether what stands above the room is a prelude of ours, of this room as it was or is, without a change."""
+    above = full_text.partition(f"\n\n{MARKER}\n")[0]
+    found = re.findall(r"^(?:def (\w+)\(|(\w+) = |    (\w+),$)", above, re.MULTILINE)
+    used = frozenset(name for names in found for name in names) & _PUBLIC
+    return above == _prelude(used, re.search(r'^def _.+:\n    """', above, re.MULTILINE) is not None)
 
 
 def room_part(full_text: str) -> str:

@@ -10,11 +10,14 @@ threads and inside each other.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from copy import copy
+from dataclasses import fields
+from functools import lru_cache
 from typing import Any
 
 from ..errors import ProgramError
 from .check import Checker
-from .limits import DEFAULT_LIMITS, Limits, Meter
+from .limits import DEFAULT_LIMITS, FINISHED_ROOM_LIMITS, Limits, Meter
 from .names import check_lines, check_names
 from .parse_safe import TOO_DEEP, parse
 from .prelude.budget import vertex_budget
@@ -37,6 +40,31 @@ def evaluate(text: str, limits: Limits = DEFAULT_LIMITS) -> Record:
     Raises ProgramError with the line for text that is outside the room language (`refusals.ProgramProblems`, which
     lists up to ten problems), over a limit, or that fails while it runs.
     """
+    if limits is FINISHED_ROOM_LIMITS and isinstance(text, str):
+        return _copied(_finished_room(text))
+    return _evaluated(text, limits)
+
+
+@lru_cache(maxsize=3)
+def _finished_room(text: str) -> Record:
+    """Stages, checks and building evaluate one and the same text; what it means depends on nothing else."""
+    return _evaluated(text, FINISHED_ROOM_LIMITS)
+
+
+def _copied(record: Record) -> Record:
+    """A record of the caller's own; only the shapes and looks in it are shared, which nobody can change."""
+    values: dict[str, Any] = {}
+    for f in fields(record):
+        value = getattr(record, f.name)
+        if isinstance(value, list):
+            value = [dict(line) for line in value]
+        elif isinstance(value, dict):
+            value = {key: copy(inner) if isinstance(inner, (list, dict)) else inner for key, inner in value.items()}
+        values[f.name] = value
+    return Record(**values)
+
+
+def _evaluated(text: str, limits: Limits) -> Record:
     recorder = Recorder()
     vocabulary = room_vocabulary()
     lines = {name: getattr(recorder, name) for name in vocabulary.lines}

@@ -43,8 +43,14 @@ def read_materials(text: str) -> Materials:
     """
     found = Materials()
 
+    rows = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n").split("\n")
+
     def source(node: ast.expr) -> str:
-        return " ".join((ast.get_source_segment(text, node) or ast.unparse(node)).split())
+        """As written, on one line; Python's own function looks through the whole text each time."""
+        taken = [row.encode() for row in rows[node.lineno - 1 : node.end_lineno]]
+        taken[-1] = taken[-1][: node.end_col_offset]
+        taken[0] = taken[0][node.col_offset :]
+        return " ".join(b"\n".join(taken).decode().split())
 
     for node in parse(text, FINISHED_ROOM_LIMITS).body:
         named = look_name(node)

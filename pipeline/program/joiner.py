@@ -161,7 +161,7 @@ def _section(module: Module) -> str:
     body = re.sub(r"\n{4,}", "\n\n\n", "\n".join(kept)).strip("\n")
     title = (ast.get_docstring(module.tree) or "").split("\n\n")[0].replace("\n", " ")
     heading = f"# ---- {module.path.stem} "
-    return "\n".join([heading + "-" * (100 - len(heading)), *_comment(title), "", body])
+    return "\n".join([heading + "-" * (72 - len(heading)), *_comment(title), "", body])
 
 
 def _comment(sentence: str, width: int = 110) -> list[str]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import ast
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 from pydantic import ValidationError
@@ -29,7 +30,7 @@ from ..artifacts.layout import (
 )
 from ..errors import ProgramError
 from .limits import FINISHED_ROOM_LIMITS
-from .parse_safe import parse
+from .parse_safe import names_read, parse
 from .prelude.recorder import Recorder
 
 DECIMALS = 4
@@ -124,16 +125,17 @@ def print_layout(layout: Layout) -> str:
     return "\n".join([*blocks, "build()\n"])
 
 
-def print_line(line: Line) -> str:
-    """One layout line as a statement, wrapped at `WIDTH` characters where it is longer."""
+def print_line(line: Line, brief: bool = False) -> str:
+    """One layout line as a statement, wrapped at `WIDTH` characters where it is longer; `brief` leaves out all defaults."""
     name = name_of(line)
     pieces: list[str] = []
     for index, (key, field) in enumerate(type(line).model_fields.items()):
         value = getattr(line, key)
         decimals = FINE_DECIMALS if key in _FINE else DECIMALS
-        if key in _QUIET and _rounded(value, decimals) == field.default:
+        named = index >= _POSITIONAL[name]
+        if (key in _QUIET or (brief and named)) and _rounded(value, decimals) == field.default:
             continue
-        prefix = "" if index < _POSITIONAL[name] else f"{key}="
+        prefix = f"{key}=" if named else ""
         pieces.extend(_value_pieces(prefix, value, decimals))
         pieces[-1] += ","
     pieces[-1] = pieces[-1][:-1] + ")"
@@ -226,7 +228,13 @@ def parse_layout(text: str) -> Layout:
         ProgramError: the text is not Python or too large, a layout line is not a plain statement with literal arguments, or one
             says something that no room can have. It names the line.
     """
-    return layout_of(layout_statements(parse(text, FINISHED_ROOM_LIMITS)))
+    return _parsed_layout(text).model_copy(deep=True)
+
+
+@lru_cache(maxsize=4)
+def _parsed_layout(text: str) -> Layout:
+    """A stage, its checks and its building all read the lines of one and the same text."""
+    return layout_of(layout_statements(parse(text, FINISHED_ROOM_LIMITS), text))
 
 
 def parse_line(text: str) -> Line:
@@ -253,8 +261,12 @@ def layout_of(statements: list[Statement]) -> Layout:
     return Layout.model_validate({"room": rooms[0], **lists})
 
 
-def layout_statements(tree: ast.Module) -> list[Statement]:
-    """The layout lines of a program, each checked as it would be when the program runs."""
+def layout_statements(tree: ast.Module, text: str = "") -> list[Statement]:
+    """The layout lines of a program, each checked as it would be when the program runs.
+
+    Args:
+        text: what the tree was made from, where that is at hand: functions in it are looked through once only.
+    """
     recorder = Recorder()
     statements = []
     plain: set[int] = set()
@@ -263,7 +275,7 @@ def layout_statements(tree: ast.Module) -> list[Statement]:
         if isinstance(node, ast.Expr) and isinstance(node.value, ast.Call) and name in LINE_TYPES:
             plain.add(id(node.value))
             statements.append(_statement(recorder, name, node, node.value))
-    for inner in ast.walk(tree):
+    for inner in ast.walk(ast.Module(_may_have_lines(tree, text), [])):
         if not isinstance(inner, ast.Call) or not isinstance(inner.func, ast.Name) or id(inner) in plain:
             continue
         if inner.func.id in LINE_TYPES:
@@ -273,6 +285,20 @@ def layout_statements(tree: ast.Module) -> list[Statement]:
                 inner.lineno,
             )
     return statements
+
+
+def _may_have_lines(tree: ast.Module, text: str) -> list[ast.stmt]:
+    """The statements without functions that name no layout line."""
+    if not text or "\r" in text:
+        return tree.body
+    rows = text.removeprefix("\ufeff").split("\n")
+    return [
+        node
+        for node in tree.body
+        if not isinstance(node, ast.FunctionDef)
+        or node.decorator_list
+        or not LINE_TYPES.keys().isdisjoint(names_read("\n".join(rows[node.lineno - 1 : node.end_lineno])))
+    ]
 
 
 def called_name(node: ast.stmt) -> str:

@@ -44,7 +44,7 @@ def patch_text(text: str, edits: list[LayoutEdit]) -> tuple[str, list[Finding]]:
     mark = "\ufeff" if text.startswith("\ufeff") else ""
     text = text.removeprefix(mark)
     tree = parse(text, FINISHED_ROOM_LIMITS)
-    statements = layout_statements(tree)
+    statements = layout_statements(tree, text)
     edited = edit_layout(layout_of(statements), edits)
     source = _Source(text, tree)
     changes = _proxy_changes(source, statements, edited) + _line_changes(source, statements, edited)

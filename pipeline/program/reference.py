@@ -20,19 +20,19 @@ LONGEST = 8192
 
 _INTRODUCTION = """\
 # Modelling language
-A subset of Python. One def per object returns a (nested) list of shapes.
+One def per object returns a (nested) list of shapes.
 Frame: metres, origin at the centre of the object's base, +X its width, FRONT = -Y, +Z up. Fill the given (width, depth,
-height) box and stand on z = 0.
+height) and stand on z = 0.
 Expressions, slices, if, for, comprehensions, def with defaults, lambda, f-strings. NO imports, attributes or methods, while,
-try, classes, sets, *args, recursion, names with a leading _. Also: keys(dict) values(dict) items(dict) abs min max round sum
-len range zip enumerate sorted reversed int float str bool list tuple any all; {math} (radians) pi tau. A def that
-uses a function's name for a value of its own cannot call that function.
-Functions return new shapes; operations take one shape or a (nested) list. All that make something take at= (a solid's centre;
-default the origin), soft and random ones seed=, round ones segments=, {axial} axis= "x", "y" or "z".
-Every shape needs part(name, shapes, material=role). Roles: {roles}; "" is the object's own colour, "wood #8A5A3C" a colour of
-its own.
-Parts touch or overlap by 1-2 mm. Legs 30-60 mm thick, boards 18-40. At most 12 000 vertices; segments 12-16 for legs, 32-48
-for what is large.
+try, classes, sets, *args, recursion, _names. Also: keys(dict) values(dict) items(dict) abs min max round sum
+len range zip enumerate sorted reversed int float str bool list tuple any all; {math} (radians) pi tau.
+A def must not call a function whose name it uses for a value.
+Functions return new shapes; operations take one shape or a (nested) list. Makers take at= (the centre of solids, cushions
+and curtains; the rest is moved by it), soft and random ones seed=, round ones segments= (sphere and torus
+rings= too), {axial} axis= "x", "y" or "z".
+Radii and edges too large are cut to what fits. Every shape needs part(name, shapes, material=role). Roles: {roles};
+"wood #8A5A3C" has a colour of its own.
+Parts touch or overlap by 1-2 mm. At most 12 000 vertices an object; segments 12-16 for legs, 32-48 for what is large.
 """
 
 _SECTIONS: tuple[tuple[str, tuple[str, ...]], ...] = (
@@ -61,20 +61,39 @@ def armchair_1(size=(0.8, 0.78, 0.85)):
 
 
 @functools.lru_cache(maxsize=1)
+def short_reference() -> str:
+    """What a model has to know to mend an object program: the rules, and every constructor with its parameters only."""
+    lines = []
+    for title, names in _SECTIONS:
+        shown = [f"{name}({signature(name, registry.CONSTRUCTORS[name])})" for name in names or _operations()]
+        lines.append(f"{title}: {'; '.join(shown)}\n")
+    return "".join([_introduction(), *lines])
+
+
+@functools.lru_cache(maxsize=1)
 def reference() -> str:
     """What a model has to know of the language to model an object: rules, every constructor, an example; at most 8 kB."""
+    parts = [_introduction()]
+    for title, names in _SECTIONS:
+        shown = names or _operations()
+        parts.append(f"## {title}\n" + "\n".join(entry(name, registry.CONSTRUCTORS[name]) for name in shown) + "\n")
+    return "".join([*parts, "## Example\n", EXAMPLE])
+
+
+def _introduction() -> str:
     roles = ", ".join(name for name in palette.ROLE_COLOURS if name not in _OF_ROOMS)
     axial = " ".join(
         name
         for name, f in registry.CONSTRUCTORS.items()
         if "at" in (p := inspect.signature(f).parameters) and "axis" in p and name != "mirror"
     )
-    parts = [_INTRODUCTION.format(math=" ".join(registry.MATH), roles=roles, axial=axial)]
+    return _INTRODUCTION.format(math=" ".join(registry.MATH), roles=roles, axial=axial)
+
+
+def _operations() -> tuple[str, ...]:
+    """Constructors that no section names."""
     placed = {name for _, names in _SECTIONS for name in names} | {"keys", "values", "items"}
-    for title, names in _SECTIONS:
-        shown = names or tuple(name for name in registry.CONSTRUCTORS if name not in placed)
-        parts.append(f"## {title}\n" + "\n".join(entry(name, registry.CONSTRUCTORS[name]) for name in shown) + "\n")
-    return "".join([*parts, "## Example\n", EXAMPLE])
+    return tuple(name for name in registry.CONSTRUCTORS if name not in placed)
 
 
 def entry(name: str, function: Callable[..., Any]) -> str:

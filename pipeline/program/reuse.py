@@ -14,12 +14,11 @@ import threading
 from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import lru_cache
 from typing import Any
 
 from ..errors import ProgramError
 from .limits import Limits
-from .parse_safe import parse
+from .parse_safe import names_read, parse
 from .prelude.budget import spend_vertices
 from .prelude.shape import Shape, flat_shapes
 
@@ -169,7 +168,7 @@ class _Module:
             if at in found:
                 continue
             found.add(at)
-            names = _names(self.source(at))
+            names = names_read(self.source(at))
             if names & self.bound:
                 return None
             waiting += names & self.defs.keys()
@@ -201,7 +200,7 @@ class _Module:
             name = waiting.pop()
             if name not in kept:
                 kept.add(name)
-                waiting += _names(self.source(name)) & self.defs.keys()
+                waiting += names_read(self.source(name)) & self.defs.keys()
         gone = [self.defs[name] for name in used - kept]
         lines = list(self.lines)
         taken: dict[int, int] = {}
@@ -248,11 +247,3 @@ def _identifier(statement: ast.stmt) -> str:
     argument = statement.value.args[0]
     assert isinstance(argument, ast.Constant)
     return str(argument.value)
-
-
-@lru_cache(maxsize=4096)
-def _names(source: str) -> frozenset[str]:
-    """The names that a def reads."""
-    return frozenset(
-        n.id for n in ast.walk(ast.parse(source)) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load)
-    )

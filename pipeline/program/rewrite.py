@@ -25,7 +25,7 @@ def rewrite_lines(text: str, change: Callable[[Line], Line | None], added: Seque
     """
     mark = "\ufeff" if text.startswith("\ufeff") else ""
     text = text.removeprefix(mark)
-    statements = layout_statements(parse(text, FINISHED_ROOM_LIMITS))
+    statements = layout_statements(parse(text, FINISHED_ROOM_LIMITS), text)
     # Places in a syntax tree are counted in bytes of a line.
     rows = text.encode().splitlines(keepends=True)
     starts = [0]
@@ -54,5 +54,5 @@ def rewrite_lines(text: str, change: Callable[[Line], Line | None], added: Seque
     for begin, end, new_text in sorted(changes, key=lambda c: (c[0], c[1]), reverse=True):
         data = data[:begin] + new_text.replace("\n", newline).encode() + data[end:]
     result = data.decode()
-    layout_statements(parse(result, FINISHED_ROOM_LIMITS))
+    layout_statements(parse(result, FINISHED_ROOM_LIMITS), result)
     return mark + result

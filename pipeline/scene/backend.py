@@ -22,6 +22,7 @@ from .assets import dress, follow, prepare, undress
 from .capture import capture, eye_view
 from .document import scene_document
 from .holding import forget_aside
+from .keeping_images import has_images, keep_images, kept_images
 from .plan import BuildPlan, line_ids, plan_build
 from .portrait import portrait
 from .readback import read_back
@@ -88,10 +89,10 @@ class BlenderScene:
         picture = eye_view(self.scene, long_side)
         return self._drawn(picture.png, picture.method)
 
-    def portrait(self, shapes: Sequence[Shape], family: str, long_side: int) -> bytes:
+    def portrait(self, shapes: Sequence[Shape], family: str, cameras: Sequence[CameraModel]) -> bytes:
         """As `Studio.portrait`."""
         try:
-            return portrait(shapes, family, long_side)
+            return portrait(shapes, family, cameras)
         except SceneError as error:
             self._tell(f"The model could not be shown its objects: {error.message}")
             return b""
@@ -109,6 +110,18 @@ class BlenderScene:
     def undress(self, ids: Collection[str]) -> list[str]:
         """As `Wardrobe.undress`."""
         return undress(self._ensure_room(), ids)
+
+    def keep_images(self, images: Mapping[str, bytes]) -> None:
+        """As `ImageKeeper.keep_images`."""
+        keep_images(images)
+
+    def kept_images(self, names: Collection[str]) -> dict[str, bytes]:
+        """As `ImageKeeper.kept_images`."""
+        return kept_images(names)
+
+    def has_images(self, names: Collection[str]) -> bool:
+        """As `ImageKeeper.has_images`."""
+        return has_images(names)
 
     def read_back(self) -> list[LayoutEdit]:
         """As `SceneBackend.read_back`. What was copied, added or renamed gets its id on the object."""

@@ -62,27 +62,35 @@ _GROUPS = ("walls", "doors", "windows", "openings", "proxies", "lights", "worlds
 
 def remember(obj: Any, target: Target, held: bool) -> None:
     """Keep how an object stands now, so that it is seen later what the artist changed."""
+    frame, inner = np.eye(4), None
+    if held and target.kind == "proxy" and obj.type == "MESH":
+        frame, inner = own_frame(obj, mesh_edited(obj)), obj.get(INNER)
+    remember_built(obj, target)
+    if not np.array_equal(frame, np.eye(4)):
+        obj[FRAME] = _flat(frame)
+    if inner is not None:
+        obj[INNER] = list(inner)
+
+
+def remember_built(obj: Any, target: Target) -> None:
+    """Keep how an object stands that was just made from its line."""
     obj[SEEN] = _flat(world_matrix(obj))
     obj[SEEN_LOCAL] = _flat(local_matrix(obj))
     obj[SEEN_PARENT] = str(obj.parent.get(ID, "")) if obj.parent is not None else ""
     if COPIED in obj:
         del obj[COPIED]
-    if target.kind != "proxy":
-        if obj.type == "MESH":
-            obj[SEEN_MESH] = mesh_fingerprint(obj.data)
-            obj[BOUNDS] = mesh_bounds(obj.data)
-        return
-    obj[LOOK] = _look(target)
+    if target.kind == "proxy":
+        obj[LOOK] = _look(target)
     if obj.type != "MESH":
         return
-    frame = own_frame(obj, mesh_edited(obj)) if held else np.eye(4)
-    if not np.array_equal(frame, np.eye(4)):
-        obj[FRAME] = _flat(frame)
-    elif FRAME in obj:
-        del obj[FRAME]
-    if not held or INNER not in obj:
+    if target.kind == "proxy":
+        if FRAME in obj:
+            del obj[FRAME]
         obj[INNER] = [float(v) for v in target.line["size"]]
-    remember_mesh(obj)
+        remember_mesh(obj)
+    else:
+        obj[SEEN_MESH] = mesh_fingerprint(obj.data)
+        obj[BOUNDS] = mesh_bounds(obj.data)
 
 
 def remember_mesh(obj: Any) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pictures of one object that is not in the room: from its front at eye level, and from above, side by side.
+"""Pictures of one object that is not in the room, through cameras in its own frame, side by side.
 
 The window waits for them, so they are made as cheaply as can be: one mesh without textures' coordinates and without
 materials, painted once, one studio for both views, and quickly compressed.
@@ -26,21 +26,17 @@ from .meshes import write_arrays
 from .paint import paint_faces
 from .studio import studio
 
-_VIEWS = ((-0.5, -1.0, 0.42), (0.0, -0.28, 1.0))
-_FIELD = 0.42  # radians
 _NAME = "Code-as-Room Portrait"
 _QUICK = 3  # compression
 
 
-def portrait(shapes: Sequence[Shape], family: str, long_side: int) -> bytes:
-    """PNG of an object from its front and from above. Nothing stays behind. Raises SceneError when nothing can draw."""
-    points = np.concatenate([shape.vertices for shape in shapes])
-    cameras = [looking_at(points, view, long_side // 2) for view in _VIEWS]
+def portrait(shapes: Sequence[Shape], family: str, cameras: Sequence[CameraModel]) -> bytes:
+    """PNG of an object through each camera. Nothing stays behind. Raises SceneError when nothing can draw."""
     mesh = bpy.data.meshes.new(_NAME)
     obj = bpy.data.objects.new(_NAME, mesh)
     try:
         _write(mesh, shapes, family)
-        with studio([], cameras[0], long_side // 2) as stage:
+        with studio([], cameras[0], max(cameras[0].image_size)) as stage:
             stage.collection.objects.link(obj)
             pictures = [_view(stage, camera) for camera in cameras]
     finally:
@@ -72,20 +68,3 @@ def _view(stage: Any, camera: CameraModel) -> Image.Image:
     stage.camera.matrix_basis = np.array(camera.matrix, dtype=float).reshape(4, 4).T.tolist()
     drawn, _ = draw_stage(stage, camera)
     return drawn if isinstance(drawn, Image.Image) else Image.open(io.BytesIO(drawn)).convert("RGB")
-
-
-def looking_at(points: Any, direction: tuple[float, float, float], side: int) -> CameraModel:
-    """A camera that sees all points (N, 3) from a direction, in a square picture."""
-    back = np.array(direction) / np.linalg.norm(direction)
-    right = np.cross((0.0, 0.0, 1.0), back)
-    right /= np.linalg.norm(right)
-    axes = np.stack([right, np.cross(back, right), back], axis=1)
-    middle = (points.min(axis=0) + points.max(axis=0)) / 2
-    local = (points - middle) @ axes
-    tangent = np.tan(_FIELD / 2)
-    distance = float((np.abs(local[:, :2]).max(axis=1) / tangent + local[:, 2]).max()) * 1.06
-    matrix = np.eye(4)
-    matrix[:3, :3], matrix[:3, 3] = axes, middle + back * distance
-    return CameraModel(
-        kind="perspective", matrix=tuple(float(v) for v in matrix.ravel()), fov_y=_FIELD, image_size=(side, side)
-    )

@@ -119,7 +119,7 @@ def lacking(plan: Plan, room: Any) -> list[Target]:
     once: set[str] = set()
     for target in plan.targets:
         obj, digest = existing.get(target.key, [aside.get(target.key)])[0], plan.digests[target.key][1]
-        if not _has_mesh(target) or not (obj is None or (HELD not in obj and _lacks(obj, target, digest))):
+        if not has_mesh(target) or not (obj is None or (HELD not in obj and _lacks(obj, target, digest))):
             continue
         if may_share(target):  # the next ones take the mesh of the first
             if digest in once or (room is not None and shared_mesh(target, digest, layout_of(room)) is not None):
@@ -151,7 +151,7 @@ def _realise(
         return obj
     if obj is None:
         mesh = made.pop(target.key, None) or shared_mesh(target, shapes, collection)
-        obj = _new_object(target, collection, mesh)
+        obj = new_object(target, collection, mesh)
     matrix = held_matrix(obj, target)
     held = matrix is not None or (target.kind == "proxy" and is_pending(obj))
     if target.kind in ("light", "camera"):
@@ -161,15 +161,16 @@ def _realise(
         matrix = _update_mesh(target, plan, obj, shapes, made, collection)
     elif target.kind == "proxy" and obj.type == "MESH" and not is_same:
         dress_own(obj, target)
-    _place(obj, matrix, kept_parent(obj, parent), _CAMERA_TOLERANCE if target.kind == "camera" else EXACT)
+    place(obj, matrix, kept_parent(obj, parent), _CAMERA_TOLERANCE if target.kind == "camera" else EXACT)
     if not is_same:
-        _write_fields(obj, target, digest)
+        write_fields(obj, target, digest)
     if not is_same or HELD in obj:
         remember(obj, target, held)
     return obj
 
 
-def _has_mesh(target: Target) -> bool:
+def has_mesh(target: Target) -> bool:
+    """Whether a target is shown by a mesh."""
     return target.role == "shell" or target.kind == "proxy"
 
 
@@ -177,7 +178,7 @@ def _name(target: Target) -> str:
     return " ".join(part for part in target.key if part)
 
 
-def _new_object(target: Target, collection: Any, mesh: Any) -> Any:
+def new_object(target: Target, collection: Any, mesh: Any) -> Any:
     """An object of the right type with its tags, linked to its collection."""
     name = _name(target)
     data: Any
@@ -198,7 +199,7 @@ def _new_object(target: Target, collection: Any, mesh: Any) -> Any:
     return obj
 
 
-def _write_fields(obj: Any, target: Target, digest: str) -> None:
+def write_fields(obj: Any, target: Target, digest: str) -> None:
     """Keep the line's plain values on the object."""
     obj[LINE] = digest
     obj[KIND] = target.kind
@@ -262,7 +263,7 @@ def _exchange(obj: Any, mesh: Any) -> None:
         mesh.name = name
 
 
-def _place(obj: Any, matrix: Any, parent: Any, tolerance: float) -> None:
+def place(obj: Any, matrix: Any, parent: Any, tolerance: float) -> None:
     """Put the object at a place in the room under its parent, unless it is there already."""
     if obj.parent == parent and np.abs(np.array(world_matrix(obj)) - matrix).max() < tolerance:
         return

@@ -18,6 +18,7 @@ from ..program.prelude.proxies import proxy_shapes
 from ..program.prelude.record import Record
 from ..program.prelude.shape import Shape
 from ..program.prelude.shell import shell_pieces
+from ..program.prelude.skirting import skirting_pieces
 from .arrays import MeshArrays, mesh_arrays
 
 
@@ -133,7 +134,8 @@ def record_targets(record: Record) -> tuple[list[Target], list[str]]:
         rows = np.array(camera["matrix"], dtype=float).reshape(4, 4)
         targets.append(Target((camera["id"], ""), "camera", "cameras", rows, line=camera))
     taken = {target.key for target in targets}
-    for piece in enclosure_pieces(record):
+    boards = skirting_pieces(record) if record.views and record.views[0]["ceiling"] > 0 else []
+    for piece in [*enclosure_pieces(record), *boards]:
         if (piece.id, "") not in taken:
             matrix = placed(piece.origin, piece.yaw)
             targets.append(Target((piece.id, ""), piece.kind, "shell", matrix, piece.shapes))

@@ -8,7 +8,7 @@ from typing import Any
 
 from ..artifacts.layout import LayoutEdit
 from ..errors import ProgramError
-from ..program.assemble import assemble, split_room
+from ..program.assemble import is_assembled, split_room
 from ..program.differences import differences
 from ..program.evaluate import evaluate
 from ..program.limits import FINISHED_ROOM_LIMITS
@@ -47,6 +47,5 @@ def accept_text(room: Any, on: bool, renamed: Mapping[str, str]) -> None:
             obj[WAS], obj[ID] = obj[ID], new
             obj.name = new
             obj[NAME] = obj.name
-    full = read_text(room, PROGRAM)
-    if not on or full == assemble(split_room(full)[1]):
+    if not on or is_assembled(read_text(room, PROGRAM)):
         mark_written(room, PROGRAM, on)

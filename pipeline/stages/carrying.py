@@ -17,7 +17,7 @@ from ..program.limits import FINISHED_ROOM_LIMITS
 from ..program.lines import parse_layout, print_layout
 from .base import View
 
-FURNISHING = ("s06_geometry", "s07_surfaces", "s10_finish")
+FURNISHING = ("s06_geometry", "s07_surfaces", "s08_materials", "s09_textures", "s10_finish")
 """Stages whose programs say what objects are modelled with."""
 _FURNISHED = re.compile(r'^(furnish\(\s*")([^"\\]+)(")', re.MULTILINE)
 

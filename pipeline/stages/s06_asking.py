@@ -11,14 +11,17 @@ from ..artifacts.layout import ProxyLine
 from ..artifacts.objects import PiecesReply, ProgramReply, ProgramsReply
 from ..errors import ProgramError
 from ..library import catalogue
-from ..objects.asking import batches, crop_of, object_line, picture_box
+from ..objects.asking import apart_from, batches, crop_of, facing_words, object_line, picture_box
 from ..objects.choose import candidates
+from ..objects.cloths import is_lying_cloth
+from ..objects.crops import TILE, sheet, side_by_side
 from ..objects.detailing import Detailing
 from ..objects.examples import nearest_programs
+from ..objects.eyes import eyes_on
 from ..objects.mending import mended
 from ..objects.written import Written, take_program
 from ..program.prelude.palette import category_family
-from ..program.reference import reference
+from ..program.reference import reference, short_reference
 from .base import View
 from .wishes import Ask, Picture, Portrait, Request, Tell, Wish
 
@@ -38,7 +41,7 @@ def choose_pieces(view: View, detailing: Detailing) -> Asking:
     near = {c.piece.name: c.piece for p in things for c in candidates(p, "", category_family(p.category))[:_CANDIDATES]}
     pieces = "\n".join(_piece_lines(piece) for piece in near.values())
     others = ", ".join(name for name in catalogue.pieces() if name not in near)
-    lines = [_line(detailing, n, p) for n, p in enumerate(things, 1)]
+    lines = [_line(view, detailing, n, p) for n, p in enumerate(things, 1)]
     request = Request(
         key="06_pieces",
         prompt="06_pieces",
@@ -64,12 +67,24 @@ def _piece_lines(piece: catalogue.Piece) -> str:
     return "\n".join(lines)
 
 
-def _line(detailing: Detailing, number: int, proxy: ProxyLine) -> str:
+def _line(view: View, detailing: Detailing, number: int, proxy: ProxyLine) -> str:
+    """One object of a list: its place and colours, how it looks, which way it is turned, what is not part of it."""
     described = detailing.described(proxy.id)
     parent = detailing.layout.proxy(proxy.parent) if proxy.parent else None
-    on_it = ", ".join(p.id for p in detailing.layout.proxies if p.parent == proxy.id)
-    carries = f"carries {on_it}, which are not part of it" if on_it else ""
-    return "; ".join(part for part in (object_line(number, proxy, described, parent), described.words, carries) if part)
+    known = object_line(number, proxy, described, parent)
+    return "; ".join(part for part in (known, *_facts(view, detailing, proxy)) if part)
+
+
+def _facts(view: View, detailing: Detailing, proxy: ProxyLine) -> tuple[str, ...]:
+    analysis, calibration = view.need(SceneAnalysis), view.need(Calibration)
+    gone = {i for i, name in view.names(analysis).items() if name is None}
+    on_it = ", ".join(f"{i} ({c})" for i, c in apart_from(proxy, detailing.layout, analysis, gone))
+    return (
+        detailing.described(proxy.id).words,
+        f"a cloth, laid onto {proxy.parent} afterwards" if is_lying_cloth(proxy) else "",
+        facing_words(proxy, calibration.camera),
+        f"separate, not part of it: {on_it}" if on_it else "",
+    )
 
 
 def write_programs(view: View, detailing: Detailing) -> Asking:
@@ -93,7 +108,9 @@ def write_programs(view: View, detailing: Detailing) -> Asking:
     yield Tell("Looking at the objects", 2, 3)
     for draft in drafts.values():
         if draft.made is not None:
-            draft.render = yield Portrait(draft.made.shapes, category_family(draft.proxy.category))
+            shapes, family = draft.made.shapes, category_family(draft.proxy.category)
+            cameras = eyes_on(shapes, draft.proxy, view.need(Calibration).camera, TILE)
+            draft.render = yield Portrait(shapes, family, cameras)
     asked = [[drafts[p.id] for p in batch if drafts[p.id].written_by_model] for batch in groups]
     asked = [batch for batch in asked if batch]
     corrections = yield Ask(
@@ -173,13 +190,12 @@ class _Draft:
         except ProgramError as error:
             return None, str(error), source
 
-    def told(self) -> str:
-        """The program and what is wrong with it, for the second round."""
+    def told(self, facts: Sequence[str]) -> str:
+        """The program, what it is to look like, and what is wrong with it, for the second round."""
         checked = self.made.checked.findings if self.made is not None else (self.problem,)
         wrong = "\n".join(f"- {sentence}" for sentence in checked if sentence) or "- nothing was measured to be wrong"
-        return (
-            f"{self.proxy.id}, box {' x '.join(f'{v:.2f}' for v in self.proxy.size)}\n{wrong}\n```\n{self.source}\n```"
-        )
+        box = f"{self.proxy.id}, box {' x '.join(f'{v:.2f}' for v in self.proxy.size)}"
+        return f"{'; '.join((box, *facts))}\n{wrong}\n```\n{self.source}\n```"
 
 
 def _first_request(view: View, detailing: Detailing, number: int, batch: Sequence[ProxyLine]) -> Request:
@@ -188,7 +204,7 @@ def _first_request(view: View, detailing: Detailing, number: int, batch: Sequenc
     shown = [(p, box) for p in batch if (box := boxes[p.id]) is not None]
     numbers = {p.id: n for n, p in enumerate(batch, 1)}
     whole = view.reference.with_boxes_drawn([(str(numbers[p.id]), box) for p, box in shown], long_side=900)
-    lines = [f"{_line(detailing, numbers[p.id], p)}; name the def {detailing.names[p.id]}" for p in batch]
+    lines = [f"{_line(view, detailing, numbers[p.id], p)}; name the def {detailing.names[p.id]}" for p in batch]
     return Request(
         key=f"06_programs/{number}",
         prompt="06_programs",
@@ -205,25 +221,38 @@ def _first_request(view: View, detailing: Detailing, number: int, batch: Sequenc
 
 
 def _second_request(view: View, detailing: Detailing, number: int, batch: Sequence[_Draft]) -> Request:
-    analysis, calibration = view.need(SceneAnalysis), view.need(Calibration)
-    images: list[Picture] = []
-    order = []
-    for draft in batch:
-        box = picture_box(draft.proxy, calibration.camera, analysis)
-        if box is not None:
-            images.append(Picture(draft.proxy.id, crop_of(view.reference, box)))
-            order.append(f"{draft.proxy.id} in the picture")
-        if draft.render:
-            images.append(Picture(f"{draft.proxy.id} render", draft.render))
-            order.append(f"{draft.proxy.id} as your program makes it, from the front and from above")
+    sheets = [(draft, _sheet(view, draft)) for draft in batch]
+    shown = [Picture(draft.proxy.id, data) for draft, data in sheets if data]
+    order = [picture.name for picture in shown]
     return Request(
         key=f"06_correct/{number}",
         prompt="06_correct",
         reply=ProgramsReply,
         values={
-            "reference": reference(),
+            "reference": short_reference(),
             "pictures": "; ".join(f"{n} {what}" for n, what in enumerate(order, 1)) or "none",
-            "objects": "\n\n".join(draft.told() for draft in batch),
+            "style": detailing.style.style or "not known",
+            "objects": "\n\n".join(draft.told(_what(view, detailing, draft.proxy)) for draft in batch),
         },
-        images=tuple(images),
+        images=tuple(shown),
     )
+
+
+def _what(view: View, detailing: Detailing, proxy: ProxyLine) -> list[str]:
+    """What an object is and looks like, in the words of the first request."""
+    parent = detailing.layout.proxy(proxy.parent) if proxy.parent else None
+    line = object_line(0, proxy, detailing.described(proxy.id), parent).split("; ")
+    kind = proxy.category.replace("_", " ")
+    named = f"{kind} ({proxy.label})" if proxy.label and proxy.label.lower() != kind.lower() else kind
+    return [part for part in (named, *line[1:], *_facts(view, detailing, proxy)) if part]
+
+
+def _sheet(view: View, draft: _Draft) -> bytes:
+    """An object in the picture, and as its program makes it; without what there is no picture of."""
+    analysis, calibration = view.need(SceneAnalysis), view.need(Calibration)
+    box = picture_box(draft.proxy, calibration.camera, analysis)
+    tiles = [] if box is None else [("in the picture", crop_of(view.reference, box))]
+    if draft.render:
+        titles = ("yours, seen from the same place", "yours, from its front")
+        tiles += zip(titles, side_by_side(draft.render, len(titles)), strict=True)
+    return sheet([(f"{draft.proxy.id} {title}", data) for title, data in tiles]) if tiles else b""

@@ -12,6 +12,7 @@ from ..artifacts.layout import Layout, LayoutProgram, LedgerEntry
 from ..artifacts.objects import Descriptions, Geometry, ObjectProgram, OwnModelling, RoomStyle
 from ..errors import RoomError
 from ..layout.hand import apply_hand_edits, name_now
+from ..layout.pins import pinned
 from ..objects.detailing import Detailing
 from ..program.lines import parse_layout
 from .base import Reads, Stage, View
@@ -27,8 +28,10 @@ def run(view: View) -> StageRun:
     before = view.need(LayoutProgram)
     layout, findings = apply_hand_edits(parse_layout(before.text), view.hand_edits, before.hand_edits)
     standing, names = view.recall(LayoutProgram), _Names(view.hand_edits, layout)
-    if view.only is not None and standing is None:
-        raise RoomError("Nothing is modelled yet that could be kept.", "Run the whole stage first.")
+    if view.only is not None:
+        if standing is None:
+            raise RoomError("Nothing is modelled yet that could be kept.", "Run the whole stage first.")
+        layout = _small_things_stay(view, layout, standing)
     detailing = Detailing.begin(
         layout,
         names.in_descriptions(view.need(Descriptions)),
@@ -74,6 +77,12 @@ class _Names(Renames):
         return OwnModelling(functions=functions, boxes=[self.now(i) for i in own.boxes])
 
 
+def _small_things_stay(view: View, layout: Layout, standing: LayoutProgram) -> Layout:
+    """The layout with small things where stage 7 put them: only a part is done anew, and nothing else is to jump."""
+    there, _ = apply_hand_edits(parse_layout(standing.text), view.hand_edits, standing.hand_edits)
+    return pinned(layout, there, {p.id for p in there.proxies if p.placement == "surface"}, ())
+
+
 def _kept(view: View, layout: Layout) -> frozenset[str]:
     """Ids that stay as they are: what is not chosen, and what is locked."""
     if view.only is None:
@@ -87,7 +96,7 @@ def _ledger_line(view: View, entry: LedgerEntry, geometry: Geometry) -> LedgerEn
     made = geometry.of(name) if name is not None else None
     if name is None:
         return entry.model_copy(update={"state": "dropped", "reason": entry.reason or "removed by hand"})
-    if entry.state not in ("placed", "detailed") or made is None:
+    if entry.state not in ("placed", "detailed", "deferred") or made is None:
         return entry
     if made.source == "proxy":
         return entry.model_copy(update={"state": "placed", "reason": made.note})
@@ -122,5 +131,5 @@ STAGE = Stage(
     settings=("objects",),
     notes=True,
     partial=True,
-    recalls=(Reads(LayoutProgram, (ID,)), Reads(Geometry), Reads(OwnModelling)),
+    recalls=(Reads(LayoutProgram, (ID, "s07_surfaces")), Reads(Geometry), Reads(OwnModelling)),
 )

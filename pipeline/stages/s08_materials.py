@@ -13,12 +13,13 @@ import numpy as np
 
 from ..artifacts.analysis import Calibration, Finding, SceneAnalysis
 from ..artifacts.layout import Layout, LayoutProgram, ProxyLine
-from ..artifacts.materials import Materials, MaterialsReply
+from ..artifacts.materials import Materials, MaterialsReply, OwnFinishes
 from ..artifacts.objects import Descriptions, RoomStyle
 from ..errors import ProgramError
 from ..layout.hand import apply_hand_edits
 from ..materials.answered import Answered
 from ..materials.decide import Deciding, fittings_of, kept_finishes
+from ..materials.own import with_own
 from ..materials.shell import ShellColours, shell_choices, shell_colours
 from ..objects.asking import batches, object_line, picture_box
 from ..objects.text import read_modelling, relaid
@@ -77,7 +78,8 @@ def _kept(view: View, text: str, layout: Layout, former: Materials | None) -> fi
     """Finishes that stay: the artist's own, and of what is locked or not chosen."""
     present = finishes.present_names(layout)
     standing = view.recall(LayoutProgram)
-    source = standing.text if standing is not None else text
+    own = view.recall(OwnFinishes) or OwnFinishes()
+    source = with_own(standing.text if standing is not None else text, own, view.hand_edits)
     held = set(view.locked)
     if view.only is not None:
         held |= {name for name in present if name not in view.only}
@@ -157,5 +159,5 @@ STAGE = Stage(
     run=run,
     notes=True,
     partial=True,
-    recalls=(Reads(LayoutProgram, (ID,)), Reads(Materials)),
+    recalls=(Reads(LayoutProgram, (ID,)), Reads(Materials), Reads(OwnFinishes)),
 )

@@ -22,50 +22,66 @@ from ..errors import ProgramError, RoomError
 from ..layout.hand import apply_hand_edits
 from ..models.image_base import Proportions
 from ..objects.colours import ColourMeter, to_code
+from ..objects.text import relaid
 from ..program.evaluate import evaluate
 from ..program.limits import FINISHED_ROOM_LIMITS
 from ..program.lines import parse_layout
-from ..program.prelude.shape import Shape
+from ..program.prelude.record import Record
 from ..textures.decor import decor_texture
 from ..textures.floors import TILE, floor_texture
+from ..textures.looks import finished_text
+from ..textures.names import image_name
 from ..textures.painted import painted_face, painted_tile
 from ..textures.pixels import Pixels, to_png
 from ..textures.shading import typical_colour
 from ..textures.shown import Flat, NotUsable, Shown
 from ..textures.targets import FLOOR, Target, targets_of
 from .base import Reads, Stage, View
+from .carrying import carried_on
 from .texture_wishes import KeepImages, Paint, Painting, PaintRequest
-from .wishes import StageRun, Tell
+from .wishes import Build, StageRun, Tell
 
 ID = "s09_textures"
 
 
 def run(view: View) -> StageRun:
-    """Write `Textures`; the images go beside the memory. At most one round of painting, side by side."""
-    program, calibration = view.need(LayoutProgram), view.need(Calibration)
-    layout, _ = apply_hand_edits(parse_layout(program.text), view.hand_edits, program.hand_edits)
-    targets = targets_of(layout, _shapes(program.text))
+    """Write the `LayoutProgram` with images in its finishes, and `Textures`; the images go beside the memory.
+
+    At most one round of painting, side by side.
+    """
+    before, calibration = view.need(LayoutProgram), view.need(Calibration)
+    layout, findings = apply_hand_edits(parse_layout(before.text), view.hand_edits, before.hand_edits)
+    text = relaid(before.text, layout)
+    record = evaluate(text, FINISHED_ROOM_LIMITS)
+    targets = targets_of(layout, record.furnished)
     work = _Work(view, layout, calibration, view.recall(TextureChoices) or TextureChoices())
     yield Tell("Taking surfaces out of the picture", 1, 3)
     work.from_picture(targets)
     requests = work.requests(targets)
     if requests:
         yield Tell("Painting surfaces", 2, 3)
-        painted = yield Paint(tuple(requests.values()))  # type: ignore[misc]  # a wish of this stage alone
+        painted = yield Paint(tuple(requests.values()))
         work.take(requests, painted)
     found = [work.chosen(target) for target in targets]
+    textures = Textures(surfaces=found, findings=work.findings)
+    text = _sound(text, textures, record)
     yield Tell("Keeping the images", 3, 3)
     if work.images:
-        yield KeepImages(work.images)  # type: ignore[misc]
-    return [Textures(surfaces=found, findings=work.findings)]
+        yield KeepImages(work.images)
+    yield Build(text)
+    return [carried_on(view, before, ID, text, layout, findings, before.ledger), textures]
 
 
-def _shapes(text: str) -> Mapping[str, Sequence[Shape]]:
-    """The parts of the objects as they are built; none where the text cannot be evaluated."""
+def _sound(text: str, textures: Textures, record: Record) -> str:
+    """The text with the images on their surfaces, as it was where that cannot be."""
     try:
-        return evaluate(text, FINISHED_ROOM_LIMITS).furnished
-    except ProgramError:
-        return {}
+        made = finished_text(text, textures, record)
+        evaluate(made, FINISHED_ROOM_LIMITS)
+    except ProgramError as error:
+        message = f"The images could not be used ({str(error)[:200].rstrip('.')}); made materials stand."
+        textures.findings.append(Finding(about="textures", message=message, severity="warning"))
+        return text
+    return made
 
 
 @dataclass
@@ -231,15 +247,17 @@ class _Work:
 
     def _entry(self, target: Target, source: TextureSource, flat: Flat, note: str) -> Texture:
         data = to_png(flat.pixels)
-        self.images[target.surface] = data
+        sha256 = hashlib.sha256(data).hexdigest()
+        name = image_name(target.surface, sha256)
+        self.images[name] = data
         whole = np.ones(flat.pixels.shape[:2], dtype=bool)
         return Texture(
             surface=target.surface,
             part=target.part,
             kind=target.kind,
             source=source,
-            name=target.surface,
-            sha256=hashlib.sha256(data).hexdigest(),
+            name=name,
+            sha256=sha256,
             pixels=(flat.pixels.shape[1], flat.pixels.shape[0]),
             size=(round(flat.size[0], 4), round(flat.size[1], 4)),
             tiles=target.kind == "floor",
@@ -262,11 +280,11 @@ STAGE = Stage(
     reads=(
         Reads(SceneAnalysis),
         Reads(Calibration),
-        Reads(LayoutProgram, ("s07_surfaces",)),
+        Reads(LayoutProgram, ("s07_surfaces", "s08_materials")),
         Reads(Descriptions),
         Reads(RoomStyle),
     ),
-    writes=(Textures,),
+    writes=(LayoutProgram, Textures),
     run=run,
     recalls=(Reads(TextureChoices),),
 )

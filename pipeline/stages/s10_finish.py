@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Stage 10, light and views: lights as in the picture, an exposure to match, and cameras to look at the room with.
+"""Stage 10, light and views: lights as in the picture, an exposure to match, cameras, and a last look for faults.
 
 The model is asked once what kind of light the picture has, and everything works without its answer. Watts, exposure and
 cameras are worked out here: rays are followed through the room's boxes, since a render would take longer and would have to
@@ -11,9 +11,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ..artifacts.analysis import Calibration, Finding, SceneAnalysis
+from ..artifacts.correction import FAULT_KINDS, CorrectionReport
 from ..artifacts.layout import CameraLine, Layout, LayoutEdit, LayoutProgram, ProxyLine, ViewLine, WindowLine
 from ..artifacts.light import Brightness, LightPlan, LightReply
 from ..artifacts.objects import RoomStyle
+from ..correction.correct import Options, correct
+from ..correction.looks import pictures_of
+from ..errors import ProgramError
 from ..layout.hand import apply_hand_edits
 from ..light.albedo import room_albedo
 from ..light.decide import Decision, decide
@@ -34,19 +38,24 @@ from ..program.lines import parse_layout
 from ..program.prelude.proxies import proxy_shapes
 from ..program.prelude.record import Record
 from .base import Reads, Stage, View
-from .wishes import Ask, Build, Picture, Request, StageRun, Tell
+from .wishes import Ask, Build, FindImages, Picture, Request, StageRun, Tell
 
 ID = "s10_finish"
 REFERENCE = "reference"
+CORRECTIONS_OFF = "corrections_off"
+"""Setting: kinds of faults that are found but not mended, with commas between; "kind:id" spares one thing alone."""
 _OWN = ("light", "world", "view", "camera")
 _BEFORE = ("s07_surfaces", "s08_materials", "s09_textures")
 
 
 def run(view: View) -> StageRun:
-    """Write the `LayoutProgram` with lights, sky, exposure and cameras, and `LightPlan`, which says why they are so."""
+    """Write the `LayoutProgram` with lights, sky, exposure and cameras, and `LightPlan`, which says why they are so.
+
+    Then the finished room is looked through for faults; `CorrectionReport` lists what was mended and what was not.
+    """
     before, calibration = view.need(LayoutProgram), view.need(Calibration)
     layout, findings = apply_hand_edits(parse_layout(before.text), view.hand_edits, before.hand_edits)
-    yield Tell("Looking at the light", 1, 3)
+    yield Tell("Looking at the light", 1, 4)
     record = evaluate(relaid(before.text, layout), FINISHED_ROOM_LIMITS)
     space = space_of(layout, room_albedo(record))
     places = _places(view, space, calibration)
@@ -56,11 +65,14 @@ def run(view: View) -> StageRun:
     if request is not None:
         (reply,) = yield Ask((request,), optional=True)
     decision = decide(space, places, layout.windows, lamps, _shining(view, calibration, lamps, places), reply)
-    yield Tell("Placing lights and cameras", 2, 3)
+    yield Tell("Placing lights and cameras", 2, 4)
     finished, plan = _finished(view, space, places, decision, record, calibration)
     held, more = _as_the_artist_left_it(finished, view.hand_edits)
-    text = relaid(before.text, held)
-    yield Tell("Building the room", 3, 3)
+    yield Tell("Looking for faults", 3, 4)
+    shown = pictures_of(record)
+    pictures = (yield FindImages(shown)) if shown else None
+    text, report = _corrected(view, relaid(before.text, held), pictures)
+    yield Tell("Building the room", 4, 4)
     yield Build(text)
     plan = plan.model_copy(update={"findings": [*plan.findings, *more]})
     new = [f for f in findings if f not in before.findings]
@@ -72,7 +84,21 @@ def run(view: View) -> StageRun:
             "hand_edits": len(view.hand_edits),
         }
     )
-    return [program, plan]
+    return [program, plan, report]
+
+
+def _corrected(view: View, text: str, pictures: frozenset[str] | None) -> tuple[str, CorrectionReport]:
+    """The text without the faults that can be mended, and what was mended; what the artist holds is not touched."""
+    swings = {a.id: a.swing or "" for a in view.need(SceneAnalysis).architecture if a.kind == "door"}
+    said = view.settings.get(CORRECTIONS_OFF, "").split(",")
+    off = frozenset(kind for kind in FAULT_KINDS if kind in said)
+    spared = frozenset((kind, name) for kind, sign, name in (word.partition(":") for word in said) if sign)
+    try:
+        corrected = correct(text, Options(off, view.locked, spared, pictures, swings))
+    except ProgramError as error:
+        message = f"The room could not be looked through for faults: {str(error)[:200].rstrip('.')}."
+        return text, CorrectionReport(left=[Finding(about="room", message=message, severity="warning")])
+    return corrected.text, corrected.report
 
 
 def _places(view: View, space: Space, calibration: Calibration) -> Places | None:
@@ -192,7 +218,8 @@ STAGE = Stage(
     id=ID,
     title="Light and views",
     reads=(Reads(SceneAnalysis), Reads(Calibration), Reads(LayoutProgram, _BEFORE)),
-    writes=(LayoutProgram, LightPlan),
+    writes=(LayoutProgram, LightPlan, CorrectionReport),
     run=run,
+    settings=(CORRECTIONS_OFF,),
     recalls=(Reads(RoomStyle),),
 )

@@ -9,8 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
-from ..models.image_base import Proportions
+if TYPE_CHECKING:  # the wishes are imported everywhere, and image services bring a lot along
+    from ..models.image_base import Proportions
 
 
 @dataclass(frozen=True)
@@ -32,12 +34,20 @@ class PaintRequest:
 
 @dataclass(frozen=True)
 class Painting:
-    """What came of a request: the image's bytes and the model that made it, or a plain sentence why there is none."""
+    """What came of a request: the image's bytes and the model that made it, or a plain sentence why there is none.
+
+    Attributes:
+        cost: US dollars, None when unknown; seconds, tries: what it took, 0 for an image that was painted before.
+        asked: hash of what was asked, as `textures.kept.request_hash`.
+    """
 
     data: bytes = b""
     model: str = ""
     problem: str = ""
     cost: float | None = None
+    seconds: float = 0.0
+    tries: int = 0
+    asked: str = ""
 
 
 @dataclass(frozen=True)
@@ -48,10 +58,18 @@ class Paint:
 
 
 @dataclass(frozen=True)
-class KeepImages:
-    """Images (PNG bytes by name) to be kept beside the memory: packed into the .blend, or written to a folder.
+class FindImages:
+    """Which of these images the scene has; answered with a set of names, or with None where it keeps none."""
 
-    What is there under a name already is replaced; images of other names stay.
+    names: frozenset[str]
+
+
+@dataclass(frozen=True)
+class KeepImages:
+    """Images (PNG bytes by name) to be kept beside the memory: packed into the .blend, written beside `room.py`.
+
+    The program shows them by these names (`picture(name)`). What is there under a name with other bytes is replaced
+    wherever it is shown; images of other names stay for as long as something shows them.
     """
 
     images: Mapping[str, bytes]

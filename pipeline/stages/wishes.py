@@ -4,7 +4,8 @@
 `Ask` is answered with a list of validated replies in the order of its requests; `Build` with a `SceneSummary` of what
 stands in the scene; `Render` with PNG bytes; `Portrait` with PNG bytes, empty where nothing can draw; `Tell` with None.
 `FindAssets` is answered with `FoundAssets`; `PrepareAsset` with the asset's size in metres, or a sentence that says why it
-cannot be had; `Dress` with a sentence for each object, by id, that stays as it was.
+cannot be had; `Dress` with a sentence for each object, by id, that stays as it was. `Paint`, `KeepImages` and `FindImages` are in
+`texture_wishes.py`.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from ..artifacts.camera import CameraModel
 from ..artifacts.layout import Layout
 from ..program.prelude.shape import Shape
 from ..retrieval.match import Match, Wanted
+from .texture_wishes import FindImages, KeepImages, Paint
 
 
 @dataclass(frozen=True)
@@ -85,15 +87,16 @@ class Render:
 
 @dataclass(frozen=True)
 class Portrait:
-    """Pictures of an object that is not in the room yet, from its front at eye level and from above, side by side.
+    """Pictures of an object that is not in the room yet, one through each camera, side by side.
 
     Attributes:
         shapes: in the object's frame, metres; family: of its category, for shapes without a material role.
+        cameras: in the object's frame; their pictures are square and of one size.
     """
 
     shapes: tuple[Shape, ...]
     family: str
-    long_side: int = 640
+    cameras: tuple[CameraModel, ...]
 
 
 @dataclass(frozen=True)
@@ -141,7 +144,7 @@ class Dress:
     bare: tuple[str, ...] = ()
 
 
-Wish = Ask | Build | Render | Portrait | FindAssets | PrepareAsset | Dress | Tell
+Wish = Ask | Build | Render | Portrait | FindAssets | PrepareAsset | Dress | Paint | KeepImages | FindImages | Tell
 StageRun = Generator[Wish, Any, list[BaseModel]]
 """A stage's generator; its return value is the list of artifacts that it writes."""
 
@@ -151,8 +154,11 @@ __all__ = [
     "CameraModel",
     "Dress",
     "FindAssets",
+    "FindImages",
     "FoundAssets",
+    "KeepImages",
     "Layout",
+    "Paint",
     "Picture",
     "Portrait",
     "PrepareAsset",

@@ -61,11 +61,11 @@ def triangles(shapes: Sequence[Shape]) -> tuple[Floats, Ints]:
     corners: list[Floats] = []
     owners: list[Ints] = []
     for number, shape in enumerate(shapes):
-        by_length: dict[int, list[tuple[int, ...]]] = {}
-        for face in shape.faces:
-            by_length.setdefault(len(face), []).append(face)
-        for length, faces in by_length.items():
-            table = np.array(faces, dtype=np.int64)
+        flat, lengths = shape.corners
+        starts = np.cumsum(lengths) - lengths
+        kinds, first = np.unique(lengths, return_index=True)
+        for length in kinds[np.argsort(first)].tolist():
+            table = flat[starts[lengths == length][:, None] + np.arange(length)]
             for k in range(1, length - 1):
                 corners.append(shape.vertices[table[:, (0, k, k + 1)]])
                 owners.append(np.full(len(table), number, dtype=np.int64))

@@ -1,41 +1,115 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How a texture is written in the room language."""
+"""How textures are written in the room language, and put into the finishes that a room's text has already."""
 
 from __future__ import annotations
 
-from ..artifacts.textures import Texture
+from collections.abc import Mapping, Sequence
+
+from ..artifacts.textures import Texture, Textures
+from ..materials.parts import cells_of
+from ..program import finishes
+from ..program.lines import quoted
+from ..program.prelude.dressing import look_of_role
+from ..program.prelude.looks import Look
+from ..program.prelude.record import Record
+from ..program.prelude.shape import Shape
+from .names import shows_image_of
 
 ROUGHNESS = {"floor": 0.5, "wall": 0.8, "rug": 0.95, "cloth": 0.95, "picture": 0.7, "screen": 0.25}
+_KEPT = ("roughness", "specular", "coat", "sheen")
+"""Numbers of the look before that a texture keeps: only colours come from the image."""
+_RELIEF = {"rug": "bump(noise_map(0.008), 0.003)", "cloth": "bump(noise_map(0.004), 0.001)"}
+"""Pile and weave, which no image of a room from above shows."""
 
 
 def picture_text(texture: Texture) -> str:
     """The map of a texture, such as `picture("floor", size=(2.4, 2.4))`; "" where it has no image.
 
-    What tiles repeats every so many metres; what does not fills its part once.
+    What tiles repeats every so many metres over the object's x and y; what does not fills its part once.
     """
     if not texture.name:
         return ""
-    parts = [f'"{texture.name}"']
+    parts = [quoted(texture.name)]
     if texture.tiles:
         parts.append(f"size=({_number(texture.size[0])}, {_number(texture.size[1])})")
     if texture.turned:
         parts.append(f"turned={_number(texture.turned)}")
+    if texture.tiles:
+        parts.append('space="object"')
+    if texture.colour:
+        parts.append(f'color="#{texture.colour}"')
     return f"picture({', '.join(parts)})"
 
 
-def look_text(texture: Texture) -> str:
-    """A look that shows a texture and nothing else, "" where it has no image."""
-    shown = picture_text(texture)
-    return f"principled(base={shown}, roughness={ROUGHNESS[texture.kind]})" if shown else ""
+def look_text(texture: Texture, before: Look | None = None) -> str:
+    """A look that shows a texture, "" where it has no image.
 
-
-def finish_text(texture: Texture) -> str:
-    """The line that puts a texture on its surface alone, "" where it has no image.
-
-    An object has one `finish` line only: where it has one already, its part takes the look instead.
+    Args:
+        before: the look that the surface had, whose gloss stays.
     """
-    look = look_text(texture)
-    return f'finish("{texture.surface}", {{"{texture.part}": {look}}})' if look else ""
+    shown = picture_text(texture)
+    if not shown:
+        return ""
+    numbers: dict[str, float] = {"roughness": ROUGHNESS[texture.kind]}
+    if before is not None and texture.kind not in ("picture", "screen"):
+        numbers |= {n: v for n, v in before.inputs if n in _KEPT and isinstance(v, (int, float))}
+    parts = [f"base={shown}", *(f"{name}={_number(value)}" for name, value in numbers.items())]
+    if texture.kind in _RELIEF:
+        parts.append(f"bump={_RELIEF[texture.kind]}")
+    return f"principled({', '.join(parts)})"
+
+
+def finished_text(text: str, textures: Textures, record: Record) -> str:
+    """A room text in which every surface that has an image shows it, and those that have none do not any more.
+
+    An object has one finish only: the part that shows the image takes another look there, the others stay.
+
+    Args:
+        record: what the text evaluates to.
+
+    Raises:
+        ProgramError: the text cannot be parsed.
+    """
+    found = finishes.read_materials(text)
+    for texture in textures.surfaces:
+        finish = found.finishes.get(texture.surface, {})
+        old = [key for key, look in finish.items() if shows_image_of(texture.surface, look)]
+        finish = {key: look for key, look in finish.items() if key not in old}
+        if texture.name:
+            key = _key(texture, record.furnished.get(texture.surface, ()))
+            before = record.finishes.get(texture.surface, {})
+            finish |= {key: look_text(texture, _look_before(key, before))}
+        if finish:
+            found.finishes[texture.surface] = finish
+        else:
+            found.finishes.pop(texture.surface, None)
+    _forget_unused(found)
+    return finishes.with_materials(text, found)
+
+
+def _shows_own(surface: str, look: str) -> bool:
+    """Whether a look shows an image that was made for this surface; its name begins with the surface's."""
+    start = f"picture({quoted(surface)[:-1]}"
+    return any(f"{start}{end}" in look for end in ('"', "_"))
+
+
+def _key(texture: Texture, shapes: Sequence[Shape]) -> str:
+    """Which part, or material role, shows the image: what is seen most, where that is not known."""
+    if texture.part or not shapes:
+        return texture.part
+    widest = max(cells_of(shapes, texture.kind in ("picture", "screen")), key=lambda cell: cell.share)
+    return widest.part or widest.role
+
+
+def _look_before(key: str, finish: Mapping[str, Look]) -> Look | None:
+    return look_of_role("", [dict(finish)], key)
+
+
+def _forget_unused(found: finishes.Materials) -> None:
+    """Take out the named looks that nothing wears any more."""
+    worn = {look for finish in found.finishes.values() for look in finish.values()}
+    expressions = " ".join(worn)
+    found.looks = {name: e for name, e in found.looks.items() if name in worn or name in expressions}
 
 
 def _number(value: float) -> str:

@@ -14,6 +14,10 @@ Pixels: TypeAlias = NDArray[np.float32]
 """Linear sRGB (rows, columns, 3), or one channel (rows, columns)."""
 Mask: TypeAlias = NDArray[np.bool_]
 DARKEST = 1e-3
+_PLENTY = 3.0
+"""Pixels of a blur's width that show all there is of it: what is blurred wider is worked out on fewer pixels."""
+_AT_ONCE = 32_768
+"""Pixels that are sampled in one go, so that what is worked out stays in the processor's cache."""
 _TABLE = np.arange(256) / 255.0
 _LINEAR = np.where(_TABLE <= 0.04045, _TABLE / 12.92, ((_TABLE + 0.055) / 1.055) ** 2.4).astype(np.float32)
 _TO_CONE = np.array(((0.4122, 0.5363, 0.0514), (0.2119, 0.6807, 0.1074), (0.0883, 0.2817, 0.6300)), dtype=np.float32)
@@ -72,18 +76,18 @@ def box_filtered(values: NDArray[np.float64], radius: int, axis: int, wrap: bool
     """The mean over `radius` values to both sides along an axis."""
     pad = [(0, 0)] * values.ndim
     pad[axis] = (radius + 1, radius)
-    sums = np.cumsum(np.pad(values, pad, mode="wrap" if wrap else "edge"), axis=axis)
-    length = values.shape[axis]
-    window = 2 * radius + 1
-    high = np.take(sums, np.arange(window, window + length), axis=axis)
-    low = np.take(sums, np.arange(length), axis=axis)
-    found: NDArray[np.float64] = (high - low) / window
+    sums = np.pad(values, pad, mode="wrap" if wrap else "edge")
+    np.cumsum(sums, axis=axis, out=sums)
+    length, window = values.shape[axis], 2 * radius + 1
+    before = (slice(None),) * axis
+    found: NDArray[np.float64] = sums[(*before, slice(window, window + length))] - sums[(*before, slice(length))]
+    found /= window
     return found
 
 
 def blurred_inside(values: Pixels, mask: Mask, sigma: float, wrap: bool = False) -> Pixels:
     """The blur of what lies inside a mask, for every pixel; far from the mask its overall mean."""
-    step = int(sigma / 5)
+    step = int(sigma / _PLENTY)
     if step > 1 and not wrap and min(mask.shape) > 4 * step:
         return _blurred_coarsely(values, mask, sigma, step)
     weight = mask.astype(np.float32)
@@ -130,19 +134,30 @@ def sampled(values: Pixels, x: NDArray[np.float64], y: NDArray[np.float64]) -> P
 
     Outside the picture its edge is repeated; overshoot beyond the neighbouring pixels is cut.
     """
-    rows, columns = values.shape[:2]
+    flat = values.reshape(values.shape[0] * values.shape[1], -1)
+    xs, ys = x.ravel(), y.ravel()
+    result = np.empty((len(xs), flat.shape[1]), dtype=np.float32)
+    for start in range(0, len(xs), _AT_ONCE):
+        part = slice(start, start + _AT_ONCE)
+        _sampled(flat, values.shape[:2], xs[part], ys[part], result[part])
+    np.clip(result, float(values.min()), float(values.max()), out=result)
+    return result.reshape((*x.shape, flat.shape[1])) if values.ndim == 3 else result.reshape(x.shape)
+
+
+def _sampled(
+    flat: Pixels, shape: tuple[int, ...], x: NDArray[np.float64], y: NDArray[np.float64], result: Pixels
+) -> None:
+    """Write what lies at some places of an image, given as a list of its pixels (N, channels)."""
+    rows, columns = shape
     fx, fy = x - 0.5, y - 0.5
     left, top = np.floor(fx).astype(np.int64), np.floor(fy).astype(np.int64)
     across, down = _cubic((fx - left).astype(np.float32)), _cubic((fy - top).astype(np.float32))
-    flat = values.reshape(rows * columns, -1)
-    result = np.zeros((*x.shape, flat.shape[1]), dtype=np.float32)
     xs = [np.clip(left + i - 1, 0, columns - 1) for i in range(4)]
+    result[:] = 0.0
     for j in range(4):
         start = np.clip(top + j - 1, 0, rows - 1) * columns
-        line = sum(across[i][..., None] * flat[start + xs[i]] for i in range(4))
-        result += down[j][..., None] * line
-    np.clip(result, float(values.min()), float(values.max()), out=result)
-    return result if values.ndim == 3 else result[..., 0]
+        line = sum(across[i][:, None] * flat.take(start + xs[i], axis=0) for i in range(4))
+        result += down[j][:, None] * line
 
 
 def _cubic(t: NDArray[np.float32]) -> tuple[NDArray[np.float32], ...]:

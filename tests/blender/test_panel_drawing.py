@@ -64,10 +64,12 @@ class Drawn:
         self._say(kind.name if text is None else text, icon)
         return SimpleNamespace(**{prop.identifier: None for prop in kind.properties})
 
-    def operator_menu_enum(self, name: str, property: str, text: str = "", icon: str = "NONE") -> None:
+    def operator_menu_enum(self, name: str, property: str, text: str = "", icon: str = "NONE") -> Any:
         group, verb = name.split(".")
-        assert property in getattr(getattr(bpy.ops, group), verb).get_rna_type().properties
+        kind = getattr(getattr(bpy.ops, group), verb).get_rna_type()
+        assert property in kind.properties
         self._say(text, icon)
+        return SimpleNamespace(**{prop.identifier: None for prop in kind.properties})
 
     def menu(self, name: str, text: str = "", icon: str = "NONE") -> None:
         assert hasattr(bpy.types, name)

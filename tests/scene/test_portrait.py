@@ -7,6 +7,7 @@ import io
 
 import bpy
 import numpy as np
+from code_as_room.pipeline.objects.eyes import looking_at
 from code_as_room.pipeline.program.evaluate import evaluate_object
 from code_as_room.pipeline.scene.portrait import portrait
 from PIL import Image
@@ -24,7 +25,10 @@ def kinds() -> list[int]:
 
 def test_it_shows_front_and_top_in_the_parts_colours_and_leaves_nothing() -> None:
     before = kinds()
-    page = Image.open(io.BytesIO(portrait(evaluate_object(POST, "post"), "other", 240))).convert("RGB")
+    shapes = evaluate_object(POST, "post")
+    points = np.concatenate([shape.vertices for shape in shapes])
+    cameras = [looking_at(points, way, 120) for way in ((-0.5, -1.0, 0.42), (0.0, -0.28, 1.0))]
+    page = Image.open(io.BytesIO(portrait(shapes, "other", cameras))).convert("RGB")
     assert page.size == (240, 120) and kinds() == before
     pixels = np.asarray(page, dtype=int)
     red = (pixels[..., 0] > 120) & (pixels[..., 1] < 90)

@@ -6,7 +6,7 @@ import copy
 import io
 import json
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -32,6 +32,8 @@ EMPTY = {
     "06_pieces": {"objects": []},
     "06_programs": {"objects": []},
     "06_correct": {"objects": []},
+    "08_materials": {"palette": [], "objects": []},
+    "10_light": {"style": "soft daylight"},
 }
 
 
@@ -59,6 +61,16 @@ class PlainScene:
     def __init__(self) -> None:
         self.text, self.memory, self.built = "", "", []
         self.edits: list[LayoutEdit] = []
+        self.images: dict[str, bytes] = {}
+
+    def keep_images(self, images: Mapping[str, bytes]) -> None:
+        self.images.update(images)
+
+    def kept_images(self, names: Collection[str]) -> dict[str, bytes]:
+        return {name: self.images[name] for name in names if name in self.images}
+
+    def has_images(self, names: Collection[str]) -> bool:
+        return all(name in self.images for name in names)
 
     def build(self, text: str) -> None:
         self.text = text

@@ -23,5 +23,5 @@ def test_small_things_stay_and_the_stages_stay_done(run: Run, answers: Any, scen
         while not session.finished:
             session.step()
         session.apply()
-    assert {p.id: p for p in parse_layout(scene.text).proxies} == before
+        assert {p.id: p for p in parse_layout(scene.text).proxies} == before, f"something jumped after {stage.title}"
     assert run.status(GEOMETRY) == "done" and run.status(SMALL) == "done"

@@ -7,14 +7,16 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
+from code_as_room.pipeline.artifacts.correction import FAULT_KINDS, CorrectionReport
 from code_as_room.pipeline.artifacts.layout import Layout, LayoutEdit, LayoutProgram
 from code_as_room.pipeline.artifacts.light import LightPlan
+from code_as_room.pipeline.correction.correct import correct
 from code_as_room.pipeline.program.evaluate import evaluate
 from code_as_room.pipeline.program.lines import parse_layout, print_line
 from code_as_room.pipeline.run import Run
 from code_as_room.pipeline.stages import all_stages
 from code_as_room.pipeline.stages.s07_surfaces import STAGE as BEFORE
-from code_as_room.pipeline.stages.s10_finish import STAGE
+from code_as_room.pipeline.stages.s10_finish import CORRECTIONS_OFF, STAGE
 
 EARLIER = [s for s in all_stages() if s.id <= BEFORE.id]
 
@@ -49,7 +51,33 @@ def test_without_a_usable_answer_the_room_is_lit_and_looked_at(run: Run, scene: 
     evaluate(scene.text)
 
 
+def test_what_is_in_the_way_is_moved_said_and_not_moved_again(run: Run) -> None:
+    former = run.memory.latest(LayoutProgram, (BEFORE.id,))
+    assert former is not None
+    run.run_stage(STAGE)
+    report = run.memory.latest(CorrectionReport)
+    assert report is not None
+    moved = {fix.id for fix in report.fixes if fix.kind == "blocked"}
+    before, after = parse_layout(former.text), finished(run)
+    differ = {p.id for p, q in zip(before.proxies, after.proxies, strict=True) if p != q}
+    assert differ == moved == {"closet"} and "door_1" in report.fixes[0].message
+    assert correct(run.backend.program_text()).report.fixes == []
+    # What the artist switches off is told of and stays.
+    run.memory.settings[CORRECTIONS_OFF] = "blocked,outside"
+    assert run.status(STAGE) == "stale"
+    run.run_stage(STAGE)
+    report = run.memory.latest(CorrectionReport)
+    assert report is not None and [f.about for f in report.left] == ["closet"] and report.off == ["outside", "blocked"]
+    assert finished(run).proxies == before.proxies
+    run.memory.settings[CORRECTIONS_OFF] = "blocked:closet"
+    run.run_stage(STAGE)
+    report = run.memory.latest(CorrectionReport)
+    assert report is not None and not report.fixes and "You keep it as it is" in report.left[0].message
+    assert finished(run).proxies == before.proxies
+
+
 def test_light_moves_nothing(run: Run) -> None:
+    run.memory.settings[CORRECTIONS_OFF] = ",".join(FAULT_KINDS)
     former = run.memory.latest(LayoutProgram, (BEFORE.id,))
     assert former is not None
     before = parse_layout(former.text)

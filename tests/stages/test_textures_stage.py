@@ -15,14 +15,15 @@ import pytest
 from code_as_room.pipeline.artifacts.analysis import Calibration
 from code_as_room.pipeline.artifacts.camera import CameraModel
 from code_as_room.pipeline.artifacts.layout import Layout, LayoutProgram, ProxyLine, RoomLine, Score
-from code_as_room.pipeline.artifacts.textures import TextureChoice, TextureChoices, Textures
+from code_as_room.pipeline.artifacts.textures import Texture, TextureChoice, TextureChoices, Textures
 from code_as_room.pipeline.picture import load_picture
 from code_as_room.pipeline.program.evaluate import evaluate
+from code_as_room.pipeline.program.finishes import read_materials
 from code_as_room.pipeline.program.lines import print_layout
 from code_as_room.pipeline.stages import s09_textures
 from code_as_room.pipeline.stages.base import View
 from code_as_room.pipeline.stages.texture_wishes import KeepImages, Paint, Painting
-from code_as_room.pipeline.textures.looks import finish_text, picture_text
+from code_as_room.pipeline.textures.looks import finished_text, picture_text
 from PIL import Image
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -44,11 +45,12 @@ def room(folder: str) -> tuple[View, Layout]:
 
 
 def run(
-    folder: str, choices: TextureChoices, painter: Painter = lambda wish: None
+    folder: str, choices: TextureChoices, painter: Painter = lambda wish: None, built: list[str] | None = None
 ) -> tuple[Textures, dict[str, bytes]]:
     view, _ = room(folder)
     stage = s09_textures.run(View(view.reference, view.artifacts, recalled={TextureChoices: choices}))
     kept: dict[str, bytes] = {}
+    built = [] if built is None else built
     answer: object = None
     try:
         while True:
@@ -59,7 +61,8 @@ def run(
             elif isinstance(wish, KeepImages):
                 kept.update(wish.images)
     except StopIteration as stop:
-        (found,) = stop.value
+        program, found = stop.value
+        built.append(program.text)
         assert isinstance(found, Textures)
         return found, kept
 
@@ -85,24 +88,58 @@ def test_the_samples_floor_and_rug_are_taken_from_its_picture() -> None:
     floor, rug = found.of("floor"), found.of("rug")
     assert floor is not None and rug is not None
     assert (floor.source, floor.tiles, rug.source, rug.tiles) == ("picture", True, "picture", False)
-    assert set(kept) == {"floor", "rug"} and found.of("mirror") is None
+    assert set(kept) == {floor.name, rug.name} and found.of("mirror") is None
     for entry in (floor, rug):
         data = kept[entry.name]
         assert data.startswith(b"\x89PNG") and hashlib.sha256(data).hexdigest() == entry.sha256
         assert Image.open(io.BytesIO(data)).size == entry.pixels
     # Memory holds no image.
     assert len(found.model_dump_json()) < 6000
-    assert all(t.source == "procedural" and not t.name for t in found.surfaces if t.surface not in kept)
+    assert all(t.source == "procedural" and not t.name for t in found.surfaces if t.name not in kept)
 
 
 def test_lines_of_the_room_language() -> None:
-    found, _ = run("samples/bedroom", only("floor", "rug", source="picture"))
-    _, layout = room("samples/bedroom")
-    lines = "\n".join(line for t in found.images if (line := finish_text(t)))
-    record = evaluate(print_layout(layout).replace("build()", f"{lines}\nbuild()"))
-    assert set(record.finishes) == {"floor", "rug"}
+    built: list[str] = []
+    found, _ = run("samples/bedroom", only("floor", "rug", source="picture"), built=built)
+    finishes = evaluate(built[-1]).finishes
+    assert set(finishes) == {"floor", "rug"}
     floor = found.of("floor")
     assert floor is not None and f"size=({floor.size[0]:g}, {floor.size[1]:g})" in picture_text(floor)
+    # The colour stands where the image is missing, and is what exports without nodes show.
+    assert finishes["floor"][""].colour == f"#{floor.colour}"
+
+
+def test_an_image_takes_one_part_and_leaves_the_rest_of_what_was_said() -> None:
+    text = """\
+room(size=(4, 3, 2.5), floor=[(-2, -1.5), (2, -1.5), (2, 1.5), (-2, 1.5)])
+proxy("rug_1", "rug", centre=(0, 0, 0.01), size=(2, 1, 0.02))
+
+
+def rug_1(size):
+    width, depth, height = size
+    pile = box((width, depth, height), at=(0, 0, height / 2))
+    fringe = box((0.02, depth, height), at=(width / 2 - 0.01, 0, height / 2))
+    return [part("pile", pile, material="fabric"), part("fringe", fringe, material="linen")]
+
+
+furnish("rug_1", rug_1)
+oak_1 = wood("#6A4A32", gloss=0.3)
+wool_1 = carpet("#804020")
+finish("floor", {"": oak_1})
+finish("rug_1", {"pile": wool_1, "fringe": linen("#EEEEEE")})
+build()
+"""
+    image = {"source": "picture", "name": "rug_1", "sha256": "0", "colour": "804020"}
+    rug = Texture.model_validate({"surface": "rug_1", "kind": "rug", **image})
+    floor = Texture.model_validate({"surface": "floor", "kind": "floor", "source": "procedural"})
+    textured = finished_text(text, Textures(surfaces=[floor, rug]), evaluate(text))
+    found = read_materials(textured)
+    assert found.finishes["floor"] == {"": "oak_1"} and found.finishes["rug_1"]["fringe"] == 'linen("#EEEEEE")'
+    assert 'base=picture("rug_1"' in found.finishes["rug_1"]["pile"] and set(found.looks) == {"oak_1"}
+    # Without an image the part looks as it usually does.
+    bare = Texture.model_validate({"surface": "rug_1", "kind": "rug", "source": "procedural"})
+    again = read_materials(finished_text(textured, Textures(surfaces=[bare]), evaluate(textured)))
+    assert again.finishes["rug_1"] == {"fringe": 'linen("#EEEEEE")'}
 
 
 def test_nothing_is_taken_from_a_plan_and_it_says_so() -> None:
@@ -123,7 +160,7 @@ def test_an_image_model_goes_first_where_the_artist_wants_it() -> None:
     assert {r.key.rpartition("/")[2] for r in wish.requests} == {"floor", "rug"}
     floor, rug = found.of("floor"), found.of("rug")
     assert floor is not None and rug is not None
-    assert floor.source == rug.source == "model" and floor.model == "painter-x" and set(kept) == {"floor", "rug"}
+    assert floor.source == rug.source == "model" and floor.model == "painter-x" and set(kept) == {floor.name, rug.name}
     ratio = rug.pixels[0] / rug.pixels[1]
     assert ratio == pytest.approx(2.06 / 2.46, rel=0.03)
 
@@ -135,7 +172,7 @@ def test_what_the_model_does_not_paint_comes_from_the_picture() -> None:
         "samples/bedroom", choices, lambda wish: [Painting(problem="The account has no credit.") for _ in wish.requests]
     )
     floor = found.of("floor")
-    assert floor is not None and floor.source == "picture" and "no credit" in floor.note and "floor" in kept
+    assert floor is not None and floor.source == "picture" and "no credit" in floor.note and floor.name in kept
     assert [f.message for f in found.findings] == ["The account has no credit."]
 
 

@@ -38,13 +38,14 @@ def drape(
     """A duvet, throw or tablecloth over a box; size (width, depth) and at are those of its top.
 
     Args:
-        hang: how far down: a number or (left, right, front, back). folds, puff: waves of what hangs, billows on top, 0
-            to 1. floor: height where it comes to lie. fringe: length, at front and back. quilt: size of stitched squares.
+        hang: how far its hem is below at: a number or (left, right, front, back); what hangs stands off up to 0.1.
+            folds, puff: waves of what hangs, billows on top, 0 to 1. floor: height where it comes to lie. fringe: length,
+            at front and back. quilt: size of stitched squares.
     """  # fmt: skip
     w, d = (positive("drape", "each size", side) for side in point("drape", "size", size, 2))
-    left, right, front, back = hang_of(hang)
     thick = number("drape", "thickness", thickness, 0.001, 0.3)
     bend = min(positive("drape", "radius", radius), 0.3 * min(w, d)) + thick
+    left, right, front, back = (reaching(down, bend, thick) for down in hang_of(hang))
     wave, billow = number("drape", "folds", folds, 0.0, 1.0), number("drape", "puff", puff, 0.0, 1.0)
     square = number("drape", "quilt", quilt, 0.0, 5.0)
     s, t = np.meshgrid(spaced(-w / 2 - left, w / 2 + right, thick), spaced(-d / 2 - front, d / 2 + back, thick))
@@ -61,6 +62,14 @@ def drape(
     made = replace(placed("drape", vertices, faces, at, smooth=True, crease=75.0), uvs=uvs)
     length = number("drape", "fringe", fringe, 0.0, 0.5)
     return made if not length else fringed(made, points, length, at, seed_of(seed))
+
+
+def reaching(down: float, bend: float, thick: float) -> float:
+    """The length of cloth beyond an edge whose hem is `down` metres below what it lies on: it goes round a bend first."""
+    drop = down + 0.8 * thick * min(1.0, down / bend)  # its upper side begins a thickness higher, its hem is thin
+    if drop < bend:
+        return bend * math.acos(1 - drop / bend)
+    return bend * math.pi / 2 + drop - bend
 
 
 def hem_of(s: Floats, t: Floats, thick: float) -> Floats:

@@ -18,6 +18,7 @@ from .maps import fills
 from .palette import FAMILY_COLOURS, ROLE_COLOURS, split_role
 from .record import Record
 from .shape import Shape
+from .unwrap import UNWRAPPED
 
 MARK = "\x1f"
 """Between a material role and the key of the look that a `finish` gave it."""
@@ -37,6 +38,7 @@ _FAMILY_LOOKS: dict[str, Any] = {
     "other": plastic,
 }  # fmt: skip
 _CLOTH = ("fabric", "linen", "accent")
+_WORKED_OUT = ("corners", UNWRAPPED)
 
 
 def usual_look(role: str, family: str) -> Look | None:
@@ -100,8 +102,7 @@ def look_of_role(material: str, finishes: Iterable[dict[str, Look]], part: str =
 def recoloured(shape: Shape, material: str) -> Shape:
     """The shape with another material, and all that was worked out for it."""
     made = replace(shape, material=material)
-    if "corners" in shape.__dict__:
-        made.__dict__["corners"] = shape.corners
+    made.__dict__.update((name, shape.__dict__[name]) for name in _WORKED_OUT if name in shape.__dict__)
     return made
 
 

@@ -18,7 +18,8 @@ from .shape import Shape
 _FRAME = 0.05  # metres: width of a frame's members
 _PROUD = 0.01  # metres that a frame stands out of the wall on both sides
 _LEAF = 0.04  # metres: thickness of a door leaf
-_PANE = 0.9  # metres: about how wide one pane of glass is
+_PANEL = 0.006  # metres that the panels of a leaf stand out
+_PANE = 0.72  # metres: about how wide one pane of glass is
 
 
 def fitting_pieces(run: WallRun, hole: Hole) -> list[ShellPiece]:
@@ -98,10 +99,16 @@ def _window(width: float, z: tuple[float, float], faces: tuple[float, float], ro
 
 
 def _leaf(width: float, height: float, room_side: float) -> list[Shape]:
-    """A door leaf with two handles; its origin is the hinge, closed it lies along +x behind the room's face."""
+    """A door leaf with raised panels and two handles; its origin is the hinge, closed it lies along +x behind the room's face."""
     near, far = sorted((0.0, -_LEAF * room_side))
     gap = min(0.005, width / 20)
     leaf = _block((0.0, near, gap), (width - gap, far, height - gap), "leaf", "door")
+    panels = [
+        _block((0.14 * width, low, height * start), (0.86 * width, high, height * end), "panel", "door")
+        for low, high in ((far, far + _PANEL), (near - _PANEL, near))
+        for start, end in ((0.08, 0.44), (0.52, 0.94))
+        if width > 0.5 and height > 1.2
+    ]
     z = min(1.0, 0.5 * height)
     reach = min(0.12, width / 4)
     handles = [
@@ -109,7 +116,7 @@ def _leaf(width: float, height: float, room_side: float) -> list[Shape]:
         for low, high in ((far + 0.02, far + 0.04), (near - 0.04, near - 0.02))
         if width > 0.3
     ]
-    return [leaf, *handles]
+    return [leaf, *panels, *handles]
 
 
 def _outline(width: float, z: tuple[float, float], faces: tuple[float, float]) -> Shape:

@@ -39,7 +39,7 @@ def leaves(
     count: Any, length: Any, width: Any, height: Any = 0.3, spread: Any = 0.5, droop: Any = 0.5, kind: Any = "oval",
     at: Any = ORIGIN, seed: Any = 0,
 ) -> Shape:  # fmt: skip
-    """Round a stem; length and width of one.
+    """Round an upright stem that stands on at and is not drawn (add a tube); length and width of one.
 
     Args:
         height: of the stem. spread: 0 upright to 1 flat. droop: of the tips, 0 to 1.

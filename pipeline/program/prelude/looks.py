@@ -110,7 +110,7 @@ def mean_colour(base: Any) -> str:
 
 
 def mean_of(value: Any) -> tuple[float, float, float] | None:
-    """About the mean of a colour, number or map, linear; None where a picture decides."""
+    """About the mean of a colour, number or map, linear; None where a picture of unknown colour decides."""
     if isinstance(value, tuple):
         return value[0], value[1], value[2]
     if not isinstance(value, Map):
@@ -125,7 +125,7 @@ def mean_of(value: Any) -> tuple[float, float, float] | None:
         a, b, by = mean_of(value["a"]), mean_of(value["b"]), mean_of(value["by"])
         return blended(a, b, by[0] if by else 0.5) if a and b and value["mode"] == "mix" else a
     if value.kind == "picture":
-        return None
+        return linear(value["color"]) if value["color"] else None
     return (0.03, 0.03, 0.03) if value.kind == "brick" and value["output"] == "gap" else (0.5, 0.5, 0.5)
 
 

@@ -199,18 +199,19 @@ def brick_map(
     return new_map("brick", key, size=sides, **{name: value for name, (value, _) in options.items()})
 
 
-def picture(name: Any, size: Any = None, turned: Any = 0, space: Any = "uv") -> Map:
+def picture(name: Any, size: Any = None, turned: Any = 0, space: Any = "uv", color: Any = "") -> Map:
     """The colours of an image of the file by its name, repeated every `size` (width, depth) metres.
 
     Args: without `size` it fills the part once, seen from the front or above; `turned` degrees counter-clockwise; `space`
-    "object" lays it along the object's x and y, as on a floor.
+    "object" lays it along the object's x and y, as on a floor; `color` its mean, which stands for a missing image.
     """
     where = "picture"
     title = text(where, "the name", name, 60, empty=False)
     sides = None if size is None else lengths(where, "size", size, 0.001, 1000)
     angle, lies = checked(where, "turned", turned), checked(where, "space", space)
-    key = call_text(where, (title,), size=(sides, None), turned=(angle, 0), space=(lies, "uv"))
-    return new_map("picture", key, name=title, size=sides, turned=angle, space=lies)
+    code = colour_code(where, "color", color) if color else ""
+    key = call_text(where, (title,), size=(sides, None), turned=(angle, 0), space=(lies, "uv"), color=(code, ""))
+    return new_map("picture", key, name=title, size=sides, turned=angle, space=lies, color=code)
 
 
 def fills(value: Any) -> bool:

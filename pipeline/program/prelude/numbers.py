@@ -12,7 +12,7 @@ MASK = (1 << 64) - 1
 
 
 def lerp(a: Any, b: Any, t: Any) -> Any:
-    """From a (t = 0) to b (t = 1): numbers or tuples. t is not clamped."""
+    """From a (t = 0) to b (t = 1): numbers or tuples."""
     if isinstance(a, (tuple, list)):
         if not isinstance(b, (tuple, list)) or len(a) != len(b):
             raise fail("lerp", "a and b must both be numbers or have the same length")
@@ -64,7 +64,7 @@ def seed_bits(seed: Any) -> int:
 
 
 def rand(seed: Any, low: float = 0.0, high: float = 1.0) -> float:
-    """Looks random, but is the same for the same seed (number, text or tuple)."""
+    """The same for the same seed (number, text or tuple)."""
     if not (is_number(low) and is_number(high)):
         raise fail("rand", "low and high must be finite numbers")
     return low + (high - low) * ((seed_bits(seed) >> 11) / (1 << 53))

@@ -85,7 +85,7 @@ def category_family(category: str) -> str:
     """
     words = "".join(c if c.isalnum() else " " for c in category.lower()).split()
     for word in reversed(words):
-        singular = word[:-3] + "f" if word.endswith("ves") else word[:-1] if word.endswith("s") else word
+        singular = word[:-3] + "f" if word.endswith("ves") else word.removesuffix("s")
         for candidate in (word, singular):
             for family, known in _FAMILY_WORDS.items():
                 if candidate in known.split():

@@ -42,7 +42,8 @@ def ring_of(where: str, name: str, points: Any) -> list[tuple[float, ...]]:
 
 
 def lathe(profile: Any, segments: Any = 32, at: Any = ORIGIN) -> Shape:
-    """Points (radius, z) turned round Z: vases, lamp feet, bowls.
+    """Points (radius, z) turned round Z: vases, lamp feet, bowls. Ends off the axis get a flat face; a profile that ends
+    with its first point is a ring: shades, hollow pots.
 
     Only the first and the last point may lie on the axis (radius 0); other ends get a flat face. When the last point is
     the first, the profile is a closed ring, as for a rim.
@@ -63,10 +64,10 @@ def lathe(profile: Any, segments: Any = 32, at: Any = ORIGIN) -> Shape:
 def extrude(
     outline: Any, height: Any, at: Any = ORIGIN, axis: Any = "z", edge: Any = 0.0, holes: Any = ()
 ) -> Shape:  # fmt: skip
-    """Pulled from 0 to height along the axis; outline (x, y), for "y" (x, z), for "x" (y, z); it may be concave.
+    """Pulled from 0 to height along the axis; outline (x, y), for "y" (x, z), for "x" (y, z).
 
     Args:
-        edge: rounds the edges of both ends. holes: outlines that go through, without edge.
+        edge: rounds the edges of both ends, less than half of the thinnest part. holes: outlines that go through, without edge.
     """  # fmt: skip
     corners = ring_of("extrude", "outline", outline)
     depth = positive("extrude", "height", height)

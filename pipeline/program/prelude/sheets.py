@@ -17,7 +17,9 @@ MOST_FACES = 500_000
 
 
 def grid(function: Any, nx: Any, ny: Any, size: Any = (1.0, 1.0), at: Any = ORIGIN, smooth: Any = True) -> Shape:
-    """A sheet by function(u, v), u and v in 0..1, that gives a height over `size` (width, depth), or a point (x, y, z)."""
+    """An open sheet of nx times ny cells by function(u, v), u and v in 0..1: a height over `size` (width, depth), or a point
+    (x, y, z). Its upper side is where u runs right and v away.
+    """
     if not callable(function):
         raise fail("grid", "the first argument must be a function of u and v, such as a lambda")
     columns, rows = whole("grid", "nx", nx, 1, 2000), whole("grid", "ny", ny, 1, 2000)

@@ -184,7 +184,7 @@ def torus(
     radius: Any, thickness: Any, at: Any = ORIGIN, segments: Any = 32, rings: Any = 12, axis: Any = "z",
     angle: Any = 360.0,
 ) -> Shape:  # fmt: skip
-    """A ring, or an arc of `angle` degrees from +X on: radius to the tube's middle, thickness its own.
+    """A ring, or an arc of `angle` degrees from +X on: radius to the tube's middle, thickness the tube's own radius.
 
     Round "x" an arc begins at +Y, round "y" at +Z.
     """

@@ -15,7 +15,7 @@ _MOST = 40
 
 
 def tint(shapes: Any, colors: Any) -> Shapes:
-    """Give material roles a colour or another role: tint(shapes, {"fabric": "#8A5A3C", "wood": "dark wood"}).
+    """Give material roles a colour or another role: tint(shapes, {"fabric": "#8A5A3C"}).
 
     A colour is "#RRGGBB" (sRGB, as in a colour picker); "role #RRGGBB" changes both. "" stands for shapes without a role.
     """

@@ -14,6 +14,8 @@ import numpy as np
 
 from .shape import Floats, Shape
 
+UNWRAPPED = "unwrapped"
+"""Where a shape remembers its places, as the looks of a room change far more often than its meshes."""
 _LONG = 1.2
 """How much longer than wide a part is for its grain to follow it."""
 
@@ -46,9 +48,13 @@ def corner_uvs(shape: Shape) -> Floats:
     corners, lengths = shape.corners
     if shape.uvs is not None and len(shape.uvs) == len(corners):
         return shape.uvs
-    found = projected(shape, corners, lengths)
-    if shape.rings:
-        unroll(shape, corners, lengths, found)
+    found: Floats | None = shape.__dict__.get(UNWRAPPED)
+    if found is None:
+        found = projected(shape, corners, lengths)
+        if shape.rings:
+            unroll(shape, corners, lengths, found)
+        found.flags.writeable = False
+        shape.__dict__[UNWRAPPED] = found
     return found
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 
 from typing import Any
 
-import bpy
-
-from ...program.prelude.maps import Map
+from ...program.prelude.looks import UNKNOWN
+from ...program.prelude.maps import Map, linear
+from ..pictures import ensure_image
 from .sockets import new_node, out
 
 _APART = (7.3, 5.1, 3.7)  # metres between the patterns of two objects, at most
@@ -120,6 +120,8 @@ class Patterns:
         return self._node("TexBrick", inputs, offset=values["offset"], offset_frequency=2, squash=1.0)
 
     def _picture(self, values: dict[str, Any]) -> Any:
+        # An image node without an image is black, or pink.
+        image = ensure_image(values["name"], linear(values["color"] or UNKNOWN))
         places = self._places(values["space"], False)
         size = values["size"]
         if size is not None or values["turned"]:
@@ -131,7 +133,7 @@ class Patterns:
                 )
             places = out(self._node("Mapping", {"Vector": places, "Scale": factors}, vector_type="POINT"), "Vector")
         node = self._node("TexImage", {"Vector": places}, extension="REPEAT" if size is not None else "EXTEND")
-        node.image = bpy.data.images.get(values["name"])
+        node.image = image
         return out(node, "Color")
 
     def _ramp(self, values: dict[str, Any]) -> Any:

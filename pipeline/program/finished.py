@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A room text as it is handed out in a file: what it builds stays, and it says no more than that takes.
+
+Library pieces do only what this room asks of them, long lines are broken, and docstrings say what a thing is.
+"""
+
+from __future__ import annotations
+
+import ast
+import functools
+import re
+
+from ..errors import ProgramError
+from .lines import layout_statements, parse_line, print_line, rounded_line
+from .narrowing import narrowed
+from .wrapping import wrapped, written
+
+
+@functools.lru_cache(maxsize=2)
+def finished(text: str) -> str:
+    """The room text for `room.py`. Its layout lines are the same, and its functions make the same shapes.
+
+    A text that is not Python stays as it is.
+    """
+    try:
+        tree = ast.parse(text)
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return text
+    lines = text.split("\n")
+    spans = {n.name: (n.lineno - 1, n.end_lineno or n.lineno) for n in tree.body if isinstance(n, ast.FunctionDef)}
+    count = sum(isinstance(n, ast.FunctionDef) for n in tree.body)
+    if count != len(spans):
+        return text  # a name given twice
+    briefly = _brief_lines(tree)
+    changed = narrowed(tree)
+    kept = {n.name: n for n in tree.body if isinstance(n, ast.FunctionDef)}
+    spans |= {f"line {start}": (start, end) for start, end, _ in briefly}
+    printed = {f"line {start}": line for start, _, line in briefly}
+    for name, (start, end) in sorted(spans.items(), key=lambda item: -item[1][0]):
+        if name in printed:
+            lines[start:end] = printed[name].split("\n")
+            continue
+        if name not in kept:
+            while end < len(lines) and not lines[end].strip():
+                end += 1
+            lines[start:end] = []
+            continue
+        source = "\n".join(lines[start:end])
+        if name in changed:
+            source = written(kept[name])
+        lines[start:end] = wrapped(_strict(_titled(source))).split("\n")
+    return "\n".join(lines)
+
+
+def _brief_lines(tree: ast.Module) -> list[tuple[int, int, str]]:
+    """(first line, line after the last, text) of the layout lines, without what is the default of the language."""
+    try:
+        return [
+            (s.node.lineno - 1, s.node.end_lineno or s.node.lineno, printed)
+            for s in layout_statements(tree)
+            if parse_line(printed := print_line(s.line, brief=True)) == rounded_line(s.line) == s.line
+        ]
+    except ProgramError:
+        return []
+
+
+def _titled(source: str) -> str:
+    """A library piece's docstring without what the library's catalogue reads off it."""
+    return re.sub(r'("""[^"\n]*)\n\n\s*words: (?:[^"]|"(?!""))*"""', r'\1"""', source, count=1)
+
+
+def _strict(source: str) -> str:
+    """`zip(a, b)` with its `strict=False` said."""
+    if "zip(" not in source:
+        return source
+    tree = ast.parse(source)
+    starts = [0]
+    for line in source.encode().split(b"\n"):
+        starts.append(starts[-1] + len(line) + 1)
+    data = source.encode()
+    calls = [
+        n
+        for n in ast.walk(tree)
+        if isinstance(n, ast.Call) and isinstance(n.func, ast.Name) and n.func.id == "zip" and not n.keywords and n.args
+    ]
+    for node in sorted(calls, key=lambda n: (-(n.end_lineno or 0), -(n.end_col_offset or 0))):
+        last = node.args[-1]
+        at = starts[(last.end_lineno or 1) - 1] + (last.end_col_offset or 0)
+        data = data[:at] + b", strict=False" + data[at:]
+    return data.decode()

@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What of a function is known from plain values alone: worked out beforehand, and the branches left out that it rules out."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable
+from typing import Any
+
+LITERALS = (str, int, float, bool, type(None))
+_COMPARE: dict[type[ast.cmpop], Callable[[Any, Any], bool]] = {
+    ast.Eq: lambda a, b: a == b,
+    ast.NotEq: lambda a, b: a != b,
+    ast.In: lambda a, b: a in b,
+    ast.NotIn: lambda a, b: a not in b,
+    ast.Is: lambda a, b: a is b,
+    ast.IsNot: lambda a, b: a is not b,
+    ast.Gt: lambda a, b: a > b,
+    ast.Lt: lambda a, b: a < b,
+    ast.GtE: lambda a, b: a >= b,
+    ast.LtE: lambda a, b: a <= b,
+}
+
+
+class Folder(ast.NodeTransformer):
+    """Works out comparisons and choices between plain values, and leaves out statements that are never reached."""
+
+    def visit_Compare(self, node: ast.Compare) -> ast.expr:
+        """A comparison of two plain values."""
+        self.generic_visit(node)
+        left, right = value_of(node.left), value_of(node.comparators[0])
+        if len(node.comparators) > 1 or left is None or right is None:
+            return node
+        try:
+            return ast.Constant(_COMPARE[type(node.ops[0])](left[0], right[0]))
+        except TypeError:
+            return node
+
+    def visit_BoolOp(self, node: ast.BoolOp) -> ast.expr:
+        """`and`, `or` as far as they are known from the left."""
+        self.generic_visit(node)
+        stops = isinstance(node.op, ast.Or)
+        values = list(node.values)
+        while len(values) > 1 and (known := value_of(values[0])) is not None:
+            if bool(known[0]) == stops:
+                return values[0]
+            del values[0]
+        return values[0] if len(values) == 1 else ast.BoolOp(node.op, values)
+
+    def visit_UnaryOp(self, node: ast.UnaryOp) -> ast.expr:
+        """`not` of a plain value."""
+        self.generic_visit(node)
+        known = value_of(node.operand)
+        return ast.Constant(not known[0]) if known is not None and isinstance(node.op, ast.Not) else node
+
+    def visit_IfExp(self, node: ast.IfExp) -> ast.expr:
+        """One of two values."""
+        self.generic_visit(node)
+        known = _truth(node.test)
+        return node if known is None else node.body if known else node.orelse
+
+    def visit_Subscript(self, node: ast.Subscript) -> ast.expr:
+        """A value of a dict that is written out."""
+        self.generic_visit(node)
+        known = value_of(node.slice)
+        if known is None or not isinstance(node.value, ast.Dict) or not isinstance(node.ctx, ast.Load):
+            return node
+        keys = [None if key is None else value_of(key) for key in node.value.keys]
+        return node.value.values[keys.index(known)] if None not in keys and keys.count(known) == 1 else node
+
+    def visit_If(self, node: ast.If) -> Any:
+        """A branch."""
+        self.generic_visit(node)
+        known = _truth(node.test)
+        if known is None:
+            return _whole(node)
+        return node.body if known else node.orelse or None
+
+    def visit_For(self, node: ast.For) -> ast.stmt:
+        """A loop."""
+        self.generic_visit(node)
+        return _whole(node)
+
+    def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.stmt:
+        """A function."""
+        self.generic_visit(node)
+        return _whole(node)
+
+
+def value_of(node: ast.expr) -> tuple[Any] | None:
+    """The value of a literal, in a tuple; None for all else."""
+    if isinstance(node, ast.Constant) and isinstance(node.value, LITERALS):
+        return (node.value,)
+    if isinstance(node, (ast.Tuple, ast.List)):
+        inner = [value_of(item) for item in node.elts]
+        return (tuple(v[0] for v in inner if v is not None),) if None not in inner else None
+    return None
+
+
+def _truth(test: ast.expr) -> bool | None:
+    """Whether a condition holds, as far as that is known: `a and False` never does, whatever a is."""
+    known = value_of(test)
+    if known is not None:
+        return bool(known[0])
+    if isinstance(test, ast.BoolOp) and not does_something(test):
+        stops = isinstance(test.op, ast.Or)
+        parts = [value_of(value) for value in test.values]
+        return stops if any(part is not None and bool(part[0]) == stops for part in parts) else None
+    return None
+
+
+def _whole(node: Any) -> Any:
+    """A statement with blocks that end at their first return, and hold at least one statement where they must."""
+    for name in ("body", "orelse"):
+        block = getattr(node, name, None)
+        if isinstance(block, list):
+            ends = (at for at, inner in enumerate(block) if isinstance(inner, (ast.Return, ast.Break, ast.Continue)))
+            setattr(node, name, block[: next(ends, len(block)) + 1])
+    node.body = node.body or [ast.Pass()]
+    return node
+
+
+def drop_spare_locals(function: ast.FunctionDef) -> None:
+    """Leave out assignments to names that nothing reads, where working them out does nothing else."""
+    while True:
+        read = {n.id for n in ast.walk(function) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load)}
+        sparer = _Sparer(read)
+        sparer.visit(function)
+        if not sparer.found:
+            return
+
+
+class _Sparer(ast.NodeTransformer):
+    def __init__(self, read: set[str]) -> None:
+        self.read, self.found = read, False
+
+    def visit_Assign(self, node: ast.Assign) -> ast.stmt | None:
+        """name = value, or a, b = value, where no name is read."""
+        self._split(node)
+        parts = [n for target in node.targets for n in ast.walk(target)]
+        plain = all(isinstance(n, (ast.Name, ast.Tuple, ast.expr_context)) for n in parts)
+        if not plain or any(isinstance(n, ast.Name) and n.id in self.read for n in parts) or does_something(node.value):
+            return node
+        self.found = True
+        return None
+
+    def _split(self, node: ast.Assign) -> None:
+        """a, b = 1, 2 without those that nothing reads."""
+        target, value = node.targets[0], node.value
+        if len(node.targets) > 1 or not isinstance(target, ast.Tuple) or not isinstance(value, ast.Tuple):
+            return
+        pairs = list(zip(target.elts, value.elts, strict=False))
+        if len(target.elts) != len(value.elts) or any(isinstance(n, ast.Starred) for pair in pairs for n in pair):
+            return
+        kept = [(t, v) for t, v in pairs if not isinstance(t, ast.Name) or t.id in self.read or does_something(v)]
+        if 0 < len(kept) < len(pairs):
+            self.found = True
+            alone = len(kept) == 1
+            node.targets = [kept[0][0] if alone else ast.Tuple([t for t, _ in kept], ast.Store())]
+            node.value = kept[0][1] if alone else ast.Tuple([v for _, v in kept], ast.Load())
+
+    def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.stmt:
+        """A function."""
+        self.generic_visit(node)
+        return _whole(node)  # type: ignore[no-any-return]
+
+    def visit_For(self, node: ast.For) -> ast.stmt:
+        """A loop."""
+        self.generic_visit(node)
+        return _whole(node)  # type: ignore[no-any-return]
+
+    def visit_If(self, node: ast.If) -> ast.stmt | None:
+        """A branch, which goes when there is nothing left of it."""
+        self.generic_visit(node)
+        return _whole(node) if node.body or node.orelse else None
+
+
+def does_something(node: ast.expr) -> bool:
+    """Whether working a value out may change something: `append` does, and what is called on a value may."""
+    calls = [n for n in ast.walk(node) if isinstance(n, ast.Call)]
+    return any(not isinstance(c.func, ast.Name) or c.func.id == "append" for c in calls)

@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Lines of a program broken where they are too long to be read, at brackets first, as a person would."""
+
+from __future__ import annotations
+
+import ast
+import io
+import re
+import tokenize
+from collections.abc import Iterator
+
+from .lines import quoted
+
+WIDTH = 120
+_OPEN, _CLOSE = "([{", ")]}"
+_WORDS = re.compile(r" (?:for|if|else|and|or|\+|-|\*) ")
+
+
+def wrapped(text: str, width: int = WIDTH) -> str:
+    """The same program with its long lines broken. What cannot be broken without doubt stays as it is."""
+    found: list[str] = []
+    depth, in_text = 0, False
+    for line in text.split("\n"):
+        quotes = line.count('"""')
+        whole = not depth and not in_text and not quotes and _depth(line) == 0
+        in_text ^= quotes % 2 == 1
+        depth += 0 if quotes or in_text else _depth(line)
+        found += _broken(line, width) if whole and len(line) > width and not _has_comment(line) else [line]
+    result = "\n".join(found)
+    try:
+        same = ast.dump(ast.parse(result)) == ast.dump(ast.parse(text))
+    except SyntaxError:  # quotes within quotes, as Python 3.12 and later write f-strings
+        same = False
+    return result if same else _piecewise(text, width)
+
+
+def _piecewise(text: str, width: int) -> str:
+    """As `wrapped`, with every line tried by itself."""
+    lines = text.split("\n")
+    meant = ast.dump(ast.parse(text))
+    for at in [n for n, line in enumerate(lines) if len(line) > width and not _has_comment(line)]:
+        tried = "\n".join([*lines[:at], *_broken(lines[at], width), *lines[at + 1 :]])
+        try:
+            if ast.dump(ast.parse(tried)) == meant:
+                lines[at] = "\n".join(_broken(lines[at], width))
+        except SyntaxError:
+            continue
+    return "\n".join(lines)
+
+
+def written(node: ast.AST) -> str:
+    """A statement as text, with strings in double quotes and no brackets round what `f(x for x in y)` is given."""
+    code = _in_double_quotes(ast.unparse(node))
+    lines = code.split("\n")
+    for at, line in enumerate(lines):
+        bare = _bare_generators(line)
+        if bare != line:
+            tried = [*lines[:at], bare, *lines[at + 1 :]]
+            if ast.dump(ast.parse("\n".join(tried))) == ast.dump(ast.parse(code)):
+                lines = tried
+    return "\n".join(lines)
+
+
+def _bare_generators(line: str) -> str:
+    """f((x for x in y)) as f(x for x in y)."""
+    at = len(line)
+    while (at := line.rfind("((", 0, at)) > 0:
+        depths = [(place, letter) for place, letter, depth in _marks(line[at + 1 :]) if depth == 0]
+        end = next((place for place, letter in depths if letter == ")"), -1)
+        inner = line[at + 2 : at + 1 + end]
+        if (
+            end > 0
+            and line[at + 2 + end : at + 3 + end] == ")"
+            and " for " in inner
+            and re.match(r"[\w\]]", line[at - 1])
+        ):
+            line = f"{line[: at + 1]}{inner}{line[at + 2 + end :]}"
+    return line
+
+
+def _in_double_quotes(code: str) -> str:
+    """A program with its short strings in double quotes, where that changes nothing else."""
+    rows = code.split("\n")
+    for token in reversed(list(tokenize.generate_tokens(io.StringIO(code).readline))):
+        if token.type == tokenize.STRING and token.start[0] == token.end[0] and token.string.startswith("'"):
+            row, start, end = token.start[0] - 1, token.start[1], token.end[1]
+            rows[row] = rows[row][:start] + quoted(ast.literal_eval(token.string)) + rows[row][end:]
+        elif token.type == tokenize.STRING and token.string.startswith("f'") and '"' not in token.string:
+            row, start, end = token.start[0] - 1, token.start[1], token.end[1]
+            if "\\" not in token.string:
+                rows[row] = rows[row][:start] + f'f"{token.string[2:-1]}"' + rows[row][end:]
+    return "\n".join(rows)
+
+
+def _marks(text: str) -> Iterator[tuple[int, str, int]]:
+    """(place, character, depth of brackets) of all outside of strings, up to a comment; a bracket has its outer depth."""
+    depth, quote, skip = 0, "", False
+    for at, letter in enumerate(text):
+        if quote:
+            if skip:
+                skip = False
+            elif letter == "\\":
+                skip = True
+            elif letter == quote:
+                quote = ""
+            continue
+        if letter in "\"'":
+            quote = letter
+            continue
+        if letter == "#":
+            yield at, letter, depth
+            return
+        if letter in _CLOSE:
+            depth -= 1
+        yield at, letter, depth
+        if letter in _OPEN:
+            depth += 1
+
+
+def _has_comment(line: str) -> bool:
+    return any(letter == "#" for _, letter, _ in _marks(line))
+
+
+def _depth(line: str) -> int:
+    """How many brackets more a line opens than it closes."""
+    return sum((letter in _OPEN) - (letter in _CLOSE) for _, letter, _ in _marks(line))
+
+
+def _broken(line: str, width: int) -> list[str]:
+    """A line in several, or as it is."""
+    if len(line) <= width:
+        return [line]
+    indent = line[: len(line) - len(line.lstrip())]
+    opened, groups = 0, []
+    for at, letter, depth in _marks(line):
+        if depth == 0 and letter in _OPEN:
+            opened = at
+        elif depth == 0 and letter in _CLOSE and at > opened + 1:
+            groups.append((opened, at))
+    start, end = max(groups, key=lambda group: group[1] - group[0], default=(0, 0))
+    head = re.match(r"\s*(?:return|[\w., \[\]]+ =) ", line)
+    if head and end - start < 0.5 * (len(line) - head.end()):
+        return [f"{head.group()}(", *_filled(line[head.end() :], indent + "    ", width), f"{indent})"]
+    if not end:
+        return [line]
+    inner = _filled(line[start + 1 : end], indent + "    ", width)
+    return [line[: start + 1], *inner, *_broken(indent + line[end:].lstrip(), width)]
+
+
+def _filled(body: str, indent: str, width: int) -> list[str]:
+    """What stands in a bracket, in lines: after its commas, else before its operators."""
+    marks = {at: letter for at, letter, depth in _marks(body) if depth == 0}
+    words = [found.start() for found in _WORDS.finditer(body) if found.start() in marks]
+    commas = [at for at, letter in marks.items() if letter == ","]
+    loops = any(body[at:].startswith(" for ") for at in words)
+    cuts = [at + 1 for at in commas] if commas and not loops else words
+    if loops:
+        cuts = [at for at in words if body[at:].startswith((" for ", " if "))]
+    parts = [body[a:b].strip() for a, b in zip([0, *cuts], [*cuts, len(body)], strict=True)]
+    parts = [part for part in parts if part]
+    if commas and not loops and not body.rstrip().endswith(","):
+        parts[-1] += ","
+    lines = [indent]
+    for part in parts:
+        if lines[-1] != indent and len(lines[-1]) + 1 + len(part) > width:
+            lines.append(indent)
+        lines[-1] += part if lines[-1] == indent else f" {part}"
+    return [
+        piece for line in lines for piece in (_broken(line, width) if len(lines) > 1 or len(line) > width else [line])
+    ]
