@@ -11,7 +11,8 @@ import bpy
 
 from ..pipeline.errors import OutputError
 from ..pipeline.scene import exports
-from . import driver, view_state
+from ..pipeline.scene.tags import find_room_collection
+from . import driver
 from .base import RoomOperator, allow, busy_blocker, manager
 
 
@@ -21,6 +22,7 @@ class _Export(RoomOperator):
     bl_options = {"REGISTER"}
     ending = ""
     export: Any = None
+    lacks: Any = None
 
     filepath: bpy.props.StringProperty(  # type: ignore[valid-type]
         name="File", description="Where to write the room", subtype="FILE_PATH", options={"SKIP_SAVE"}
@@ -31,10 +33,9 @@ class _Export(RoomOperator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """There must be a layout, no run, and Object mode: what is edited now is not in the meshes yet."""
-        state = view_state.peek(context.scene)
-        missing = "" if state is None or state.has_layout else "Run the stages up to the layout first"
-        return allow(cls, busy_blocker(context) or missing)
+        """There must be a room, no run, and Object mode: what is edited now is not in the meshes yet."""
+        missing = "" if find_room_collection(context.scene) is not None else "Run the stages up to the layout first"
+        return allow(cls, cls.lacks() or busy_blocker(context) or missing)
 
     def check(self, context: bpy.types.Context) -> bool:
         """The ending is put right while the artist types."""
@@ -74,6 +75,7 @@ class CODE_AS_ROOM_OT_export_glb(_Export):
     bl_label = "Export glTF"
     ending = ".glb"
     export = staticmethod(exports.export_glb)
+    lacks = staticmethod(exports.lacks_glb)
 
     filter_glob: bpy.props.StringProperty(  # type: ignore[valid-type]
         name="Files", description="Which files are listed", default="*.glb", options={"HIDDEN"}
@@ -87,6 +89,7 @@ class CODE_AS_ROOM_OT_export_usdz(_Export):
     bl_label = "Export USD"
     ending = ".usdz"
     export = staticmethod(exports.export_usdz)
+    lacks = staticmethod(exports.lacks_usd)
 
     filter_glob: bpy.props.StringProperty(  # type: ignore[valid-type]
         name="Files", description="Which files are listed", default="*.usdz", options={"HIDDEN"}

@@ -69,7 +69,9 @@ def _with_memory(state: RoomState, uid: int, run: Run) -> RoomState:
     known, stages = _facts(run.memory, run.picture), _stages(run, uid)
     titles = {row.name: row.title for row in known["objects"] if row.name}
     textures, finish = texture_state.read(run.memory, titles), finish_state.read(run.memory, titles)
-    state = replace(state, **known, stages=stages, textures=textures, finish=finish, has_memory=bool(run.memory.entries))
+    state = replace(
+        state, **known, stages=stages, textures=textures, finish=finish, has_memory=bool(run.memory.entries)
+    )
     if not state.uses_model or state.client_problem is not None:
         return state
     return replace(state, estimate=_estimate(run, stages), spending=_spending(run))

@@ -13,6 +13,7 @@ import bpy
 from ..operators import painters, view_state
 from ..pipeline.models.addresses import is_local_url
 from ..pipeline.models.image_registry import IMAGE_PRESETS, image_preset
+from ..pipeline.models.presets import preset
 from .sentences import draw_sentence
 
 _OF_SERVICE = ("base_url", "model", "api_key", "key_variable", "price")
@@ -145,6 +146,8 @@ def draw_image_preferences(preferences: Any, layout: Any, context: Any, key_warn
     local = is_local_url(preferences.image_base_url)
     if not local:
         column.prop(preferences, "image_price", text="Price of an Image ($)")
+        if preset(preferences.provider).kind in ("builtin", "recorded"):  # else it is shown above
+            column.prop(preferences, "spending_cap", text="Spending Cap per Room ($)")
         if not preferences.image_price and preferences.spending_cap > 0.0:
             text = "While the price is not known, the spending cap cannot be kept, so nothing is painted."
             draw_sentence(column, text, context, icon="ERROR", alert=True)

@@ -11,6 +11,7 @@ from __future__ import annotations
 import ast
 import re
 import symtable
+import textwrap
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, field
 
@@ -116,7 +117,7 @@ class Pieces:
             above = max(above, item.above)
             if at in kept:
                 blocks += [f"\n\n{heading.text}" for heading in headings]
-                blocks.append("\n" * (min(above, 1) if headings else above) + item.text)
+                blocks.append("\n" * above + item.text)
                 headings, above = [], 0
         return "\n".join(blocks).strip("\n") + "\n"
 
@@ -176,18 +177,21 @@ def _taken_apart(node: ast.stmt, lines: Sequence[str], start: int) -> list[Piece
         first = _comment_above(lines, node.lineno, _first_line(method))
         taken |= set(range(first, method.end_lineno or method.lineno))
         found.append(_piece(method, lines, first, frozenset(), (node.name, method.name)))
-    rest = [child for child in node.body if child not in methods]
+    rest = [child for child in node.body if child not in methods] or [ast.Pass()]
     head = ast.ClassDef(node.name, node.bases, node.keywords, rest, node.decorator_list)
     own = [line for at, line in enumerate(lines[start : node.end_lineno], start) if at not in taken]
     text = re.sub(r"\n{3,}", "\n\n", "\n".join(own)).rstrip()
-    return [Piece(text, frozenset({node.name}), _looked_up(head), _asked(head), above=_blank(lines, start)), *found]
+    return [
+        Piece(text, frozenset({node.name}), _looked_up(ast.unparse(head)), _asked(head), above=_blank(lines, start)),
+        *found,
+    ]
 
 
 def _piece(
     node: ast.stmt, lines: Sequence[str], start: int, names: frozenset[str], owner: tuple[str, str] | None = None
 ) -> Piece:
     text = "\n".join(lines[start : node.end_lineno])
-    return Piece(text, names, _looked_up(node), _asked(node), owner, _calls_any(node), _blank(lines, start))
+    return Piece(text, names, _looked_up(text), _asked(node), owner, _calls_any(node), _blank(lines, start))
 
 
 def _blank(lines: Sequence[str], start: int) -> int:
@@ -207,9 +211,9 @@ def _bound(node: ast.stmt) -> set[str]:
     return {n.id for n in ast.walk(node) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
 
 
-def _looked_up(node: ast.AST) -> frozenset[str]:
-    """Names that a statement may look up in its module. Local names cannot be mistaken: those of the text are its own."""
-    return frozenset(n.id for n in ast.walk(node) if isinstance(n, ast.Name))
+def _looked_up(text: str) -> frozenset[str]:
+    """Names that a statement looks up in its module; local names may be spelt as others are there."""
+    return frozenset(global_names(textwrap.dedent(text)))
 
 
 def _asked(node: ast.AST) -> frozenset[str]:

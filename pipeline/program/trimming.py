@@ -114,7 +114,7 @@ def _plain_statement(node: ast.stmt, source: bytes, starts: list[int]) -> Iterat
         return
     if isinstance(node, ast.AnnAssign) and node.value is not None:
         node = ast.copy_location(ast.Assign([node.target], node.value), node)
-    indent = " " * (start - source.rindex(b"\n", 0, start) - 1)
+    indent = " " * (start - source.rfind(b"\n", 0, start) - 1)
     line = written(node)
     holder = f"if 1:\n{indent}{line}" if indent else line
     new = wrapped(holder).removeprefix("if 1:\n").removeprefix(indent)

@@ -126,8 +126,8 @@ def _depth(line: str) -> int:
     return sum((letter in _OPEN) - (letter in _CLOSE) for _, letter, _ in _marks(line))
 
 
-def _broken(line: str, width: int) -> list[str]:
-    """A line in several, or as it is."""
+def _broken(line: str, width: int, inside: bool = False) -> list[str]:
+    """A line in several, or as it is. `inside`: it stands in a bracket, where it may end anywhere."""
     if len(line) <= width:
         return [line]
     indent = line[: len(line) - len(line.lstrip())]
@@ -138,33 +138,48 @@ def _broken(line: str, width: int) -> list[str]:
         elif depth == 0 and letter in _CLOSE and at > opened + 1:
             groups.append((opened, at))
     start, end = max(groups, key=lambda group: group[1] - group[0], default=(0, 0))
-    head = re.match(r"\s*(?:return|[\w., \[\]]+ =) ", line)
-    if head and end - start < 0.5 * (len(line) - head.end()):
-        return [f"{head.group()}(", *_filled(line[head.end() :], indent + "    ", width), f"{indent})"]
+    if end - start < 0.5 * len(line.strip()):
+        head = re.match(r"\s*(?:return|[\w., \[\]]+ =) ", line)
+        if head:
+            return [f"{head.group()}(", *_filled(line[head.end() :], indent + "    ", width), f"{indent})"]
+        parts = _cut(line.strip(), _operators(line.strip())) if inside else []
+        if len(parts) > 1:
+            return [piece for row in _rows(parts, indent, width) for piece in _broken(row, width, len(parts) > 1)]
     if not end:
         return [line]
     inner = _filled(line[start + 1 : end], indent + "    ", width)
     return [line[: start + 1], *inner, *_broken(indent + line[end:].lstrip(), width)]
 
 
-def _filled(body: str, indent: str, width: int) -> list[str]:
-    """What stands in a bracket, in lines: after its commas, else before its operators."""
-    marks = {at: letter for at, letter, depth in _marks(body) if depth == 0}
-    words = [found.start() for found in _WORDS.finditer(body) if found.start() in marks]
-    commas = [at for at, letter in marks.items() if letter == ","]
-    loops = any(body[at:].startswith(" for ") for at in words)
-    cuts = [at + 1 for at in commas] if commas and not loops else words
-    if loops:
-        cuts = [at for at in words if body[at:].startswith((" for ", " if "))]
-    parts = [body[a:b].strip() for a, b in zip([0, *cuts], [*cuts, len(body)], strict=True)]
-    parts = [part for part in parts if part]
-    if commas and not loops and not body.rstrip().endswith(","):
-        parts[-1] += ","
+def _operators(text: str) -> list[int]:
+    """Where operators stand that are in no bracket."""
+    outer = {at for at, _, depth in _marks(text) if depth == 0}
+    return [found.start() for found in _WORDS.finditer(text) if found.start() in outer]
+
+
+def _cut(text: str, places: list[int]) -> list[str]:
+    parts = [text[a:b].strip() for a, b in zip([0, *places], [*places, len(text)], strict=True)]
+    return [part for part in parts if part]
+
+
+def _rows(parts: list[str], indent: str, width: int) -> list[str]:
+    """Parts side by side in lines of this width."""
     lines = [indent]
     for part in parts:
         if lines[-1] != indent and len(lines[-1]) + 1 + len(part) > width:
             lines.append(indent)
         lines[-1] += part if lines[-1] == indent else f" {part}"
-    return [
-        piece for line in lines for piece in (_broken(line, width) if len(lines) > 1 or len(line) > width else [line])
-    ]
+    return lines
+
+
+def _filled(body: str, indent: str, width: int) -> list[str]:
+    """What stands in a bracket, in lines: after its commas, else before its operators."""
+    words = _operators(body)
+    commas = [at + 1 for at, letter, depth in _marks(body) if depth == 0 and letter == ","]
+    loops = any(body[at:].startswith(" for ") for at in words)
+    cuts = [at for at in words if body[at:].startswith((" for ", " if "))] if loops else commas or words
+    parts = _cut(body, cuts)
+    if commas and not loops and not body.rstrip().endswith(","):
+        parts[-1] += ","
+    rows = _rows(parts, indent, width)
+    return [piece for row in rows for piece in _broken(row, width, inside=True)]

@@ -8,6 +8,7 @@ The scene is as it was before when the export ends, however it ends, and the fil
 from __future__ import annotations
 
 import contextlib
+import functools
 import os
 import re
 import secrets
@@ -29,6 +30,17 @@ from .tags import KIND, find_room_collection
 _MENDS = "Choose another folder, or make room."
 
 
+def lacks_glb() -> str:
+    """Why this Blender cannot export glTF, "" when it can. No I/O."""
+    return "" if hasattr(bpy.types, "EXPORT_SCENE_OT_gltf") else "Blender's own glTF add-on is switched off"
+
+
+@functools.cache
+def lacks_usd() -> str:
+    """As `lacks_glb`, for USD; some Linux distributions build Blender without it."""
+    return "" if "usd_export" in dir(bpy.ops.wm) else "This Blender was built without USD"
+
+
 def export_glb(scene: Any, path: Path) -> Path:
     """Write the room as binary glTF: one file with everything in it, metres, Y up.
 
@@ -39,10 +51,8 @@ def export_glb(scene: Any, path: Path) -> Path:
         SceneError: there is no room, or this Blender cannot export glTF now.
         OutputError: the file cannot be written; one that was there before still is.
     """
-    if "gltf" not in dir(bpy.ops.export_scene):
-        raise SceneError(
-            "Blender's own glTF add-on is switched off.", 'Switch on "glTF 2.0 format" under Preferences, Add-ons.'
-        )
+    if lacks_glb():
+        raise SceneError(f"{lacks_glb()}.", 'Switch on "glTF 2.0 format" under Preferences, Add-ons.')
     with _part_of(path.with_suffix(".glb")) as part, _exported(scene) as collection, plain_materials():
         bpy.ops.export_scene.gltf(
             filepath=str(part), check_existing=False, export_format="GLB", collection=collection.name,
@@ -56,8 +66,8 @@ def export_usdz(scene: Any, path: Path) -> Path:
 
     Returns, Raises: as `export_glb`; the file ends in .usdz.
     """
-    if "usd_export" not in dir(bpy.ops.wm):
-        raise SceneError("This Blender was built without USD.", "Use glTF instead, or Blender from blender.org.")
+    if lacks_usd():
+        raise SceneError(f"{lacks_usd()}.", "Export glTF, or use Blender from blender.org.")
     with _part_of(path.with_suffix(".usdz")) as part, _exported(scene) as collection, plain_materials(True):
         bpy.ops.wm.usd_export(
             filepath=str(part), check_existing=False, collection=collection.name, export_custom_properties=False,

@@ -50,3 +50,8 @@ def test_it_needs_object_mode() -> None:
     assert not bpy.ops.code_as_room.export_glb.poll() and not bpy.ops.code_as_room.export_usdz.poll()
     bpy.ops.object.mode_set(mode="OBJECT")
     assert bpy.ops.code_as_room.export_glb.poll()
+
+
+def test_a_scene_without_a_room_has_nothing_to_export() -> None:
+    bpy.context.window.scene = bpy.data.scenes.new("Another")
+    assert not bpy.ops.code_as_room.export_glb.poll() and not bpy.ops.code_as_room.export_usdz.poll()

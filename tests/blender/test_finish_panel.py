@@ -66,9 +66,7 @@ def scene(analysis: SceneAnalysis) -> Iterator[Any]:
     calibration = Calibration(camera=camera, floor=floor, height=2.6, error_px=0, scale_source="truth")
     run.memory.append("s01_analysis", analysis.model_copy(update={"view": "perspective", "architecture": []}), meta)
     run.memory.append("s01_analysis", calibration, meta)
-    run.memory.append(
-        "s09_textures", LayoutProgram(text=print_layout(layout), stage="s09_textures", score=SCORE), meta
-    )
+    run.memory.append("s09_textures", LayoutProgram(text=print_layout(layout), stage="s09_textures", score=SCORE), meta)
     room_memory.keep(run)
     view_state.refresh(bpy.context.scene)
     yield bpy.context.scene

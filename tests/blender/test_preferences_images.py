@@ -61,7 +61,14 @@ class Preferences(SimpleNamespace):
 
     def __init__(self, provider: str, **more: Any) -> None:
         empty = {f"image_{name}": "" for name in ("model", "api_key", "key_variable")}
-        usual = {"image_price": 0.0, "spending_cap": 0.0, "proxy": "", "ca_bundle": "", "image_services": Services()}
+        usual = {
+            "provider": "BUILTIN",
+            "image_price": 0.0,
+            "spending_cap": 0.0,
+            "proxy": "",
+            "ca_bundle": "",
+            "image_services": Services(),
+        }
         address = {"image_base_url": image_preset(provider).base_url, "image_last_provider": provider}
         super().__init__(**{"image_provider": provider, **empty, **usual, **address, **more})
 
@@ -95,7 +102,11 @@ def test_every_provider_is_drawn_with_what_it_needs(provider: str) -> None:
     assert all((name in text) is asks for name in ("image_base_url", "image_model", "image_api_key", "unencrypted"))
     assert KEY not in text
     remote = provider in ("OPENAI", "GEMINI")
-    assert ("image_price" in text) is remote and ("nothing is painted" in text) is remote
+    assert (
+        ("image_price" in text) is remote
+        and ("| spending_cap |" in text) is remote
+        and ("nothing is painted" in text) is remote
+    )
 
 
 def test_a_key_that_was_typed_for_one_service_never_stands_in_anothers_field() -> None:

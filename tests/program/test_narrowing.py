@@ -64,7 +64,7 @@ def test_what_is_always_the_same_is_worked_out() -> None:
         'furnish("x", lamp)\nfurnish("y", lamp)\n'
     )  # fmt: skip
     assert "def cube" not in text and "style" not in text and "if " not in text and "range" not in text
-    assert "def lamp(size):" in text and "side = size[0]" not in text.replace("side, spare = (size[0], size[1])", "")
+    assert "def lamp(size):" in text and "    side = size[0]\n    return ball(side)" in text and "spare" not in text
 
 
 @pytest.mark.parametrize(
