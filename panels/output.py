@@ -25,8 +25,8 @@ class CODE_AS_ROOM_PT_output(RoomPanel):
             layout.operator("code_as_room.apply_program", icon="CHECKMARK")
         layout.operator("code_as_room.write_outputs", icon="EXPORT")
         row = layout.row(align=True)
-        row.operator("code_as_room.export_glb", text="glTF")
-        row.operator("code_as_room.export_usdz", text="USD")
+        row.operator("code_as_room.export_glb")
+        row.operator("code_as_room.export_usdz")
         folder = rooms.results_of(context.scene)
         if folder is not None:
             row = layout.row(align=True)

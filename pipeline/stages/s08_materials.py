@@ -35,7 +35,7 @@ from .wishes import Ask, Build, Picture, Request, StageRun, Tell
 
 ID = "s08_materials"
 BATCH = 30
-MOST_CALLS = 4
+MOST_CALLS = 3
 _PARTS = 12
 """Parts of one object that the model is told of."""
 
