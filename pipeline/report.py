@@ -61,9 +61,10 @@ def make_report(
         describes: one sentence on what answers now (`ModelClient.describes`).
     """
     name = memory.picture_name or "a picture"
+    materials = memory.latest(Materials)
     sections: list[tuple[str, str, list[Content]]] = [
-        ("materials", "Materials", materials_section(memory.latest(Materials))),
-        ("textures", "Textures", textures_section(memory.latest(Textures), pictures)),
+        ("materials", "Materials", materials_section(materials)),
+        ("textures", "Textures", textures_section(memory.latest(Textures), pictures, materials)),
         ("light", "Light", light_section(memory.latest(LightPlan))),
         ("corrections", "Corrections", fixes_section(memory.latest(CorrectionReport))),
         ("layout", "Layout, round by round", rounds_section(memory.latest(LayoutProgram, (LAYOUT_STAGE,)))),

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Mapping
 
@@ -102,23 +103,32 @@ def _parts_row(item: ObjectMaterials, looks: Mapping[str, str]) -> list[Content]
 # ---- textures ----
 
 
-def textures_section(textures: Textures | None, pictures: Mapping[str, bytes]) -> list[Content]:
+def textures_section(
+    textures: Textures | None, pictures: Mapping[str, bytes], materials: Materials | None = None
+) -> list[Content]:
     """A card for each surface that an image could lie on: the image, where it comes from, and why; [] before stage 9.
 
     Args:
         pictures: the report's pictures; the images are under `TEXTURE` and their names.
+        materials: whose colours stand where there is no image.
     """
     if textures is None or not textures.surfaces:
         return []
     images = len(textures.images)
     intro = f"{images} of {len(textures.surfaces)} surfaces that could show an image do."
-    cards = [_texture(t, pictures.get(TEXTURE + t.name, b"")) for t in textures.surfaces]
+    cards = [_texture(t, pictures.get(TEXTURE + t.name, b""), _own_colour(t, materials)) for t in textures.surfaces]
     return [element("p", intro), element("div", *cards, of="textures")]
 
 
-def _texture(texture: Texture, data: bytes) -> Markup:
+def _own_colour(texture: Texture, materials: Materials | None) -> str:
+    """The colour of a surface without an image."""
+    made = materials.of(texture.surface) if materials is not None else None
+    found = [texture.colour, *(part.colour for part in (made.parts if made is not None else []))]
+    return next((code for code in found if re.fullmatch("[0-9a-fA-F]{6}", code)), "")
+
+
+def _texture(texture: Texture, data: bytes, colour: str) -> Markup:
     shown = picture(data, f"The image on {texture.surface}", THUMBNAIL) if data else None
-    colour = texture.colour if len(texture.colour) == 6 and texture.colour.isalnum() else ""
     empty = f' style="background:#{colour}"' if colour else ""
     where = texture.surface + (f", {texture.part}" if texture.part else "")
     source = _TAKEN[texture.source] + (f" ({texture.model})" if texture.model else "")
