@@ -60,10 +60,10 @@ class LargeRoom:
     picture: ReferencePicture
     artifacts: dict[type, Any]
 
-    def view(self, text: str, stage: str, **recalled: Any) -> View:
-        """What a stage sees when this text stands."""
+    def view(self, text: str, stage: str, recalled: dict[type, Any]) -> View:
+        """What a stage sees when this text of an earlier stage stands."""
         program = LayoutProgram(text=text, stage=stage, score=_SCORE)
-        return View(self.picture, {**self.artifacts, LayoutProgram: program}, recalled=recalled.get("recalled", {}))
+        return View(self.picture, {**self.artifacts, LayoutProgram: program}, recalled=recalled)
 
 
 _SCORE = Score(total=1, measured=1, coverage=1, overlap=1, bounds=1, relations=1, boxes=1)

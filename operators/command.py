@@ -141,6 +141,7 @@ def _perform(options: argparse.Namespace) -> int:
     from ..pipeline.scene.backend import BlenderScene
     from ..pipeline.stages import all_stages
     from ..pipeline.textures.kept import KeptImages
+    from . import own_file
 
     bpy.ops.wm.read_factory_settings(use_empty=True)
     painter, painted = _painter(options, client), KeptImages(folder / PAINTED)
@@ -160,7 +161,9 @@ def _perform(options: argparse.Namespace) -> int:
         for stage in all_stages():
             run.run_all([stage])
             kept.keep(memory)
-        _finish(run, folder)
+        with own_file.scene_settings():
+            own_file.keep_start(bpy.context.scene, picture, memory.settings)
+            _finish(run, folder)
         _export(bpy.context.scene, folder, options)
         if options.render:
             _render(run, bpy.context.scene, folder, max(64, min(4096, options.render)))

@@ -99,11 +99,11 @@ class CODE_AS_ROOM_OT_detail_again(StageOperator):
 
 
 def _stages_from_geometry(scene: Any) -> list[Stage]:
-    """The geometry stage, and those after it that are done and can be done for single objects."""
+    """The geometry stage, and those after it that are done: what they added would be gone otherwise."""
     state, stages = view_state.peek(scene), all_stages()
     place = next(n for n, stage in enumerate(stages) if stage.id == GEOMETRY)
     done = {row.id for row in state.stages if row.status == "done"} if state is not None else set()
-    return [stages[place], *(s for s in stages[place + 1 :] if s.partial and s.id in done)]
+    return [stages[place], *(s for s in stages[place + 1 :] if s.id in done)]
 
 
 class CODE_AS_ROOM_OT_edit_function(RoomOperator):

@@ -26,3 +26,10 @@ def off_text(settings: Any) -> str:
     kinds = [kind for kind in FAULT_KINDS if kind not in settings.corrections]
     spared = [word for word in settings.spared.split("\n") if word]
     return ",".join([*kinds, *spared])
+
+
+def show_off_text(settings: Any, text: str) -> None:
+    """The inverse of `off_text`."""
+    words = [word for word in text.split(",") if word]
+    settings.corrections = {kind for kind in FAULT_KINDS if kind not in words}
+    settings.spared = "\n".join(word for word in words if ":" in word)

@@ -271,7 +271,10 @@ class Job:
         self.run.take_over_edits()
         self._meanwhile.begin_stage()
         self._built = ""
-        self._go_on(lambda: StageSession(self.run, stage, self._fresh, self._only, waits=True))
+        # A stage that always does everything is not asked anew for the sake of a few objects.
+        chosen = self._only is None or stage.partial
+        fresh, only = self._fresh and chosen, self._only if chosen else None
+        self._go_on(lambda: StageSession(self.run, stage, fresh, only, waits=True))
 
     def _expect(self, stage: Stage) -> None:
         """Tell which stage begins, and how long it and those after it took before."""

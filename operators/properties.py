@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import bpy
@@ -224,6 +225,22 @@ def memory_settings(settings: Any, earlier: dict[str, str]) -> dict[str, str]:
         else:
             result.pop(name, None)
     return result
+
+
+def show_settings(settings: Any, memory: Mapping[str, str]) -> None:
+    """The inverse of `memory_settings`: the panel's settings say what memory's do."""
+    for name, switch, value in (
+        ("known_width_m", "use_known_width", "known_width"),
+        ("wall_height_m", "use_wall_height", "wall_height"),
+    ):
+        if memory.get(name):
+            setattr(settings, value, float(memory[name]))
+        setattr(settings, switch, bool(memory.get(name)))
+    settings.notes = memory.get("notes", "")
+    settings.iterations = max(1, int(memory.get("iterations", "5")))
+    settings.use_assets = memory.get("assets", "") != "off"
+    settings.modelling = memory.get("objects", "").upper() or "AUTO"
+    fault_kinds.show_off_text(settings, memory.get(CORRECTIONS_OFF, ""))
 
 
 CLASSES = (*object_list.CLASSES, CodeAsRoomSettings)

@@ -9,30 +9,34 @@ from __future__ import annotations
 import ast
 import functools
 import re
+from itertools import pairwise
 
 from ..errors import ProgramError
 from .lines import layout_statements, parse_line, print_line, rounded_line
 from .narrowing import narrowed
-from .wrapping import wrapped, written
+from .wrapping import has_comment, wrapped, written
 
 
 @functools.lru_cache(maxsize=2)
 def finished(text: str) -> str:
     """The room text for `room.py`. Its layout lines are the same, and its functions make the same shapes.
 
-    A text that is not Python stays as it is.
+    A text that is not Python stays as it is, and so does every function and line with a comment in it.
     """
     try:
         tree = ast.parse(text)
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return text
     lines = text.split("\n")
+    if "\r" in text or "\f" in text or _share_lines(tree):
+        return text
+    said = [has_comment(line) for line in lines]
     spans = {n.name: (n.lineno - 1, n.end_lineno or n.lineno) for n in tree.body if isinstance(n, ast.FunctionDef)}
     count = sum(isinstance(n, ast.FunctionDef) for n in tree.body)
     if count != len(spans):
         return text  # a name given twice
-    briefly = _brief_lines(tree)
-    changed = narrowed(tree)
+    briefly = [line for line in _brief_lines(tree) if not any(said[line[0] : line[1]])]
+    changed = narrowed(tree, [name for name, (start, end) in spans.items() if any(said[start:end])])
     kept = {n.name: n for n in tree.body if isinstance(n, ast.FunctionDef)}
     spans |= {f"line {start}": (start, end) for start, end, _ in briefly}
     printed = {f"line {start}": line for start, _, line in briefly}
@@ -50,6 +54,11 @@ def finished(text: str) -> str:
             source = written(kept[name])
         lines[start:end] = wrapped(_strict(_titled(source))).split("\n")
     return "\n".join(lines)
+
+
+def _share_lines(tree: ast.Module) -> bool:
+    """Whether two statements stand in one line."""
+    return any(b.lineno <= (a.end_lineno or a.lineno) for a, b in pairwise(tree.body))
 
 
 def _brief_lines(tree: ast.Module) -> list[tuple[int, int, str]]:

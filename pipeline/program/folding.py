@@ -5,8 +5,9 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Callable
-from typing import Any
+from typing import Any, TypeVar
 
+Block = TypeVar("Block", ast.If, ast.For, ast.FunctionDef)
 LITERALS = (str, int, float, bool, type(None))
 _COMPARE: dict[type[ast.cmpop], Callable[[Any, Any], bool]] = {
     ast.Eq: lambda a, b: a == b,
@@ -109,7 +110,7 @@ def _truth(test: ast.expr) -> bool | None:
     return None
 
 
-def _whole(node: Any) -> Any:
+def _whole(node: Block) -> Block:
     """A statement with blocks that end at their first return, and hold at least one statement where they must."""
     for name in ("body", "orelse"):
         block = getattr(node, name, None)
@@ -162,12 +163,12 @@ class _Sparer(ast.NodeTransformer):
     def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.stmt:
         """A function."""
         self.generic_visit(node)
-        return _whole(node)  # type: ignore[no-any-return]
+        return _whole(node)
 
     def visit_For(self, node: ast.For) -> ast.stmt:
         """A loop."""
         self.generic_visit(node)
-        return _whole(node)  # type: ignore[no-any-return]
+        return _whole(node)
 
     def visit_If(self, node: ast.If) -> ast.stmt | None:
         """A branch, which goes when there is nothing left of it."""

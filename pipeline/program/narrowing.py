@@ -20,13 +20,16 @@ from .folding import LITERALS, Folder, drop_spare_locals
 MOST_ROUNDS = 12
 
 
-def narrowed(tree: ast.Module) -> set[str]:
+def narrowed(tree: ast.Module, untouched: Collection[str] = ()) -> set[str]:
     """Change the functions of a program, so that they do no more than is asked of them.
+
+    Args:
+        untouched: functions that stay word by word, and with them what they call as they call it.
 
     Returns:
         The names of those that are not what they were; functions that nothing uses are gone from the tree.
     """
-    program = _Program(tree)
+    program = _Program(tree, untouched)
     for _ in range(MOST_ROUNDS):
         program.drop_unused()
         fixed = [program.settle(name) for name in program.calls.functions]
@@ -87,12 +90,15 @@ class _Calls:
 class _Program:
     """A module on its way to do less."""
 
-    def __init__(self, tree: ast.Module) -> None:
+    def __init__(self, tree: ast.Module, untouched: Collection[str]) -> None:
         functions = {n.name: n for n in tree.body if isinstance(n, ast.FunctionDef)}
         others = [n for n in tree.body if not isinstance(n, ast.FunctionDef)]
         outside = [_Facts.of(n) for n in others if not _handed_over(n)]
         furnished = {_handed_over(n) for n in others} - {""}
         self.calls = _Calls(functions, {n: _Facts.of(f) for n, f in functions.items()}, outside, furnished)
+        for name in functions.keys() & set(untouched):
+            facts = self.calls.facts[name]
+            facts.open_calls |= {name, *facts.calls}
         self.changed: set[str] = set()
         # Two functions of one name, or a name that is something else elsewhere: better not to look closer.
         names = [n.name for n in tree.body if isinstance(n, ast.FunctionDef)]

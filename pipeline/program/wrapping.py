@@ -25,7 +25,7 @@ def wrapped(text: str, width: int = WIDTH) -> str:
         whole = not depth and not in_text and not quotes and _depth(line) == 0
         in_text ^= quotes % 2 == 1
         depth += 0 if quotes or in_text else _depth(line)
-        found += _broken(line, width) if whole and len(line) > width and not _has_comment(line) else [line]
+        found += _broken(line, width) if whole and len(line) > width and not has_comment(line) else [line]
     result = "\n".join(found)
     try:
         same = ast.dump(ast.parse(result)) == ast.dump(ast.parse(text))
@@ -38,7 +38,7 @@ def _piecewise(text: str, width: int) -> str:
     """As `wrapped`, with every line tried by itself."""
     lines = text.split("\n")
     meant = ast.dump(ast.parse(text))
-    for at in [n for n, line in enumerate(lines) if len(line) > width and not _has_comment(line)]:
+    for at in [n for n, line in enumerate(lines) if len(line) > width and not has_comment(line)]:
         tried = "\n".join([*lines[:at], *_broken(lines[at], width), *lines[at + 1 :]])
         try:
             if ast.dump(ast.parse(tried)) == meant:
@@ -117,7 +117,8 @@ def _marks(text: str) -> Iterator[tuple[int, str, int]]:
             depth += 1
 
 
-def _has_comment(line: str) -> bool:
+def has_comment(line: str) -> bool:
+    """Whether a line ends in a comment."""
     return any(letter == "#" for _, letter, _ in _marks(line))
 
 

@@ -31,7 +31,7 @@ def make_record(record: Record) -> list[str]:
     Returns:
         One plain sentence for each number of the shell that had to be clamped.
     """
-    scene = bpy.context.scene
+    scene: Any = bpy.context.scene
     plan = plan_record(record)
     collections = ensure_collections(scene, "Code-as-Room")
     existing = tagged_objects(collections["room"])

@@ -22,6 +22,7 @@ from ..layout.hand import apply_hand_edits
 from ..light.albedo import room_albedo
 from ..light.decide import Decision, decide
 from ..light.exposure import matched
+from ..light.glowing import switched
 from ..light.lamps import is_lamp
 from ..light.lights import Lit, make_lights
 from ..light.measure import Places, shines, surround, visible_places
@@ -71,7 +72,7 @@ def run(view: View) -> StageRun:
     yield Tell("Looking for faults", 3, 4)
     shown = pictures_of(record)
     pictures = (yield FindImages(shown)) if shown else None
-    text, report = _corrected(view, relaid(before.text, held), pictures)
+    text, report = _corrected(view, switched(relaid(before.text, held), held, lamps, record.furnished), pictures)
     yield Tell("Building the room", 4, 4)
     yield Build(text)
     plan = plan.model_copy(update={"findings": [*plan.findings, *more]})

@@ -286,3 +286,25 @@ def test_control_c_while_a_service_is_silent_ends_the_program(room, silent_servi
         program.kill()
     assert program.returncode == 130 and "stopped" in said and "Traceback" not in said
     assert list(room.out.iterdir()) == []
+
+
+def test_the_artist_goes_on_in_the_file_that_the_command_wrote(room) -> None:
+    import bpy
+    import code_as_room
+    from code_as_room.operators import view_state
+
+    room.make("--iterations", "2", "--width", "4.7", "--notes", "a small bed").finished()
+    assert not hasattr(bpy.types.Scene, "code_as_room"), "the command leaves nothing registered behind"
+    code_as_room.register()
+    try:
+        bpy.ops.wm.open_mainfile(filepath=str(room.out / "room.blend"))
+        scene = bpy.context.scene
+        state = view_state.refresh(scene)
+        assert state.problem is None and state.has_layout and state.picture_name == "room.png"
+        assert {row.status for row in state.stages} == {"done"}, [(r.id, r.status) for r in state.stages]
+        settings = scene.code_as_room
+        assert settings.use_known_width and abs(settings.known_width - 4.7) < 1e-5
+        assert (settings.iterations, settings.notes, settings.use_wall_height) == (2, "a small bed", False)
+    finally:
+        code_as_room.unregister()
+        bpy.ops.wm.read_factory_settings(use_empty=True)

@@ -128,3 +128,16 @@ def test_layout_lines_say_no_defaults() -> None:
 
 def test_a_text_that_is_not_python_stays() -> None:
     assert finished("room(\n") == "room(\n"
+
+
+def test_what_somebody_says_in_comments_stays() -> None:
+    text = HEAD + 'proxy("a", "b", centre=(0, 0, 1), size=(1, 1, 2), yaw=0)  # by the window\n\n\n'
+    text += "def legs(size, count=4):\n    return [box(size)] * count\n\n\n"
+    text += "def table(size):\n    # three, since the fourth is broken\n    return legs(size, count=3)\n\n\n"
+    text += 'furnish("a", table)\nbuild()\n'
+    assert finished(text) == text
+
+
+def test_statements_that_share_a_line_stay() -> None:
+    text = HEAD + 'proxy("a", "b", centre=(0, 0, 1), size=(1, 1, 2), yaw=0); build()\n'
+    assert finished(text) == text
