@@ -38,14 +38,14 @@ SIZE, HEIGHT = (1280, 960), 2.7
 FLOOR = [(-5.6, -4.2), (5.6, -4.2), (5.6, 4.2), (-5.6, 4.2)]
 RUGS = ("floor_rug", "floor_rug", "floor_rug")
 AT_WALLS = ("wardrobe", "bookcase", "sideboard", "desk", "chest_of_drawers", "double_bed", "tv_stand", "console_table",
-            "bookcase", "glass_cabinet", "upright_piano", "shelf_unit", "vanity", "sideboard", "desk")  # fmt: skip
+            "bookcase", "sideboard", "chest_of_drawers", "cabinet", "desk", "sideboard", "wardrobe")  # fmt: skip
 FREE = ("sofa", "dining_table", "coffee_table", "armchair", "armchair", "round_table", "floor_lamp", "chair", "chair",
         "chair", "chair", "chair", "ottoman", "potted_plant", "side_table", "nightstand", "side_table", "floor_lamp",
-        "wing_chair", "indoor_tree", "stool", "stool", "office_chair", "rocking_chair")  # fmt: skip
+        "wing_chair", "ottoman", "stool", "stool", "office_chair", "armchair")  # fmt: skip
 HUNG = ("picture_frame", "picture_frame", "picture_frame", "wall_mirror", "wall_clock", "curtain_pair")
 OVERHEAD = ("pendant", "chandelier", "ceiling_lamp")
-SMALL = ("table_lamp", "book_stack", "flower_vase", "mug", "plate", "bowl", "bottle", "candle", "laptop", "monitor",
-         "keyboard", "small_plant", "photo_frame", "tray", "teapot", "fruit_bowl", "alarm_clock", "speaker")  # fmt: skip
+SMALL = ("table_lamp", "book_stack", "empty_vase", "mug", "plate", "bowl", "bottle", "candle", "laptop", "monitor",
+         "small_plant", "photo_frame", "tray", "teapot", "speaker", "candle_holder")  # fmt: skip
 CARRIERS = frozenset({"sideboard", "desk", "chest_of_drawers", "tv_stand", "console_table", "dining_table", "coffee_table",
                       "round_table", "side_table", "nightstand"})  # fmt: skip
 COLOURS = ("8A5F3C", "C7B299", "3E4A56", "E8E2D6", "7A8B6F", "A8553F", "2E2B28", "B9A27E", "5C6F82", "D9C7A8")

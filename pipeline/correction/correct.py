@@ -18,6 +18,7 @@ from ..errors import ProgramError
 from ..program.evaluate import evaluate
 from ..program.limits import FINISHED_ROOM_LIMITS
 from ..program.lines import parse_layout, print_line
+from ..program.parse_safe import uncollected
 from ..program.patch import patch_text
 from ..program.prelude.record import Record
 from . import blocked, cameras, coincident, lights, looks, outside, overlap, support
@@ -97,7 +98,8 @@ def correct(text: str, options: Options | None = None, record: Record | None = N
     report = CorrectionReport(off=[kind for kind in FAULT_KINDS if kind in options.off])
     text, record = _mend_looks(text, record, options, report)
     before = parse_layout(text)
-    room = _mend_places(room_of(before, record, options.pictures), options, report)
+    with uncollected():
+        room = _mend_places(room_of(before, record, options.pictures), options, report)
     edits = edits_between(before, room.layout)
     if edits:
         text, _ = patch_text(text, edits)

@@ -7,6 +7,7 @@ floor over a local grid and the places where it would just touch; on a carrier o
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Iterator
 
@@ -116,9 +117,7 @@ def _meets(body: Body, other: Body) -> bool:
 
 def _shifts(room: Room, body: Body, knowledge: Knowledge) -> list[tuple[float, float]]:
     """Moves on the floor, shortest first: onto the grid, just inside, just off what it runs into now."""
-    count = int(REACH / STEP)
-    grid = np.stack(np.meshgrid(*[np.arange(-count, count + 1) * STEP] * 2), axis=-1).reshape(-1, 2)
-    found = [(float(x), float(y)) for x, y in grid if 0.0 < math.hypot(x, y) <= REACH]
+    found = list(_grid())
     floor = room.layout.room.floor
     into = push_inside(body.rect, floor).shift
     start = body.rect.moved(*into)
@@ -127,8 +126,19 @@ def _shifts(room: Room, body: Body, knowledge: Knowledge) -> list[tuple[float, f
         inside = push_inside(body.rect.moved(dx, dy), floor).shift
         found += [(dx, dy), (dx + inside[0], dy + inside[1])]
     if math.hypot(*into) > REACH:
-        found += [(into[0] + dx, into[1] + dy) for dx, dy in found[: len(grid)] if math.hypot(dx, dy) <= 1.0]
-    return sorted((s for s in found if math.hypot(*s) > 1e-4), key=lambda s: (round(math.hypot(*s), 4), s))
+        found += [(into[0] + dx, into[1] + dy) for dx, dy in found if math.hypot(dx, dy) <= 1.0]
+    moves = np.array(found)
+    lengths = np.hypot(moves[:, 0], moves[:, 1])
+    order = np.lexsort((moves[:, 1], moves[:, 0], np.round(lengths, 4)))
+    return [(float(x), float(y)) for x, y in moves[order[lengths[order] > 1e-4]]]
+
+
+@functools.lru_cache(maxsize=1)
+def _grid() -> list[tuple[float, float]]:
+    """Moves onto the places of the grid."""
+    count = int(REACH / STEP)
+    grid = np.stack(np.meshgrid(*[np.arange(-count, count + 1) * STEP] * 2), axis=-1).reshape(-1, 2)
+    return [(float(x), float(y)) for x, y in grid if 0.0 < math.hypot(x, y) <= REACH]
 
 
 def _beyond(shift: tuple[float, float], more: tuple[float, float]) -> tuple[float, float]:

@@ -10,8 +10,6 @@ from collections.abc import Mapping, Sequence
 from ..artifacts.layout import Layout, ProxyLine
 from ..errors import ProgramError
 from ..program import finishes
-from ..program.evaluate import evaluate
-from ..program.limits import FINISHED_ROOM_LIMITS
 from ..program.prelude.palette import ROLE_COLOURS, split_role
 from ..program.prelude.shape import Shape
 
@@ -47,11 +45,9 @@ def switched(text: str, layout: Layout, lamps: Sequence[ProxyLine], shapes: Mapp
         if changed.finishes == found.finishes:
             return text
         _drop_unworn(changed, found)
-        result = finishes.with_materials(text, changed)
-        evaluate(result, FINISHED_ROOM_LIMITS)
+        return finishes.with_materials(text, changed)
     except ProgramError:
         return text
-    return result
 
 
 def _unfinished(shapes: Sequence[Shape]) -> dict[str, str]:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 
 import numpy as np
@@ -87,11 +88,14 @@ def floor_and_walls(space: Space, each: int = 60) -> tuple[Floats, Floats, Float
     return tuple(np.concatenate([p[i] for p in parts]) for i in range(3))
 
 
+@functools.lru_cache(maxsize=1)
 def small(picture: ReferencePicture) -> Floats:
-    """The picture as linear colours (height, width, 3), at most `LONG_SIDE` pixels."""
+    """The picture as linear colours (height, width, 3), at most `LONG_SIDE` pixels; not to be written into."""
     image = Image.fromarray(picture.pixels())
     image.thumbnail((LONG_SIDE, LONG_SIDE), Image.Resampling.BOX)
-    return linear(np.asarray(image, dtype=float) / 255.0)
+    found = linear(np.asarray(image, dtype=float) / 255.0)
+    found.flags.writeable = False
+    return found
 
 
 def surround(picture: ReferencePicture) -> Floats:

@@ -28,6 +28,7 @@ _FAR = 1e9
 _SLAB = 0.06  # metres: what a table's top is high
 _SKIN = 1e-4  # metres
 _SMALL = 0.02  # cubic metres
+_AT_ONCE = 8192  # rays
 _THIN = ("curtain", "drape", "sheer", "blind", "lamp", "light", "chandelier", "pendant", "sconce", "plant", "rug",
          "carpet", "mat")  # fmt: skip
 SKY, FLOOR, CEILING, WALLS = -1, 0, 1, 2
@@ -139,27 +140,50 @@ class Space:
     def _boxes_hit(self, origins: Floats, ways: Floats, distance: Floats, surface: Ints, normal: Floats) -> None:
         b = self.boxes
         first = WALLS + len(self.walls)
-        for i in range(len(b.centres)):
-            offset = origins - b.centres[i]
-            c, s = b.cosines[i], b.sines[i]
-            local = np.stack([c * offset[:, 0] + s * offset[:, 1], c * offset[:, 1] - s * offset[:, 0], offset[:, 2]])
-            way = np.stack([c * ways[:, 0] + s * ways[:, 1], c * ways[:, 1] - s * ways[:, 0], ways[:, 2]])
-            way = np.where(np.abs(way) < 1e-12, 1e-12, way)
-            half = b.halves[i][:, None]
-            a, z = (-half - local) / way, (half - local) / way
-            near, far = np.minimum(a, z), np.maximum(a, z)
-            axis = near.argmax(axis=0)
-            enter, leave = near.max(axis=0), far.min(axis=0)
-            met = (enter < leave) & (enter > _SKIN) & (enter < distance)
-            if not met.any():
-                continue
-            distance[met] = enter[met]
-            surface[met] = first + i
-            side = -np.sign(np.take_along_axis(way, axis[None], axis=0)[0])
-            flat = np.zeros((3, len(origins)))
-            np.put_along_axis(flat, axis[None], side[None], axis=0)
-            turned = np.stack([c * flat[0] - s * flat[1], s * flat[0] + c * flat[1], flat[2]], axis=1)
-            normal[met] = turned[met]
+        for start in range(0, len(origins), _AT_ONCE):
+            part = slice(start, start + _AT_ONCE)
+            near = _near(b, origins[part], ways[part])
+            for i in np.flatnonzero(near.any(axis=0)):
+                which = start + np.flatnonzero(near[:, i])
+                self._box_hit(int(i), which, origins[which], ways[which], distance, surface, normal, first + int(i))
+
+    def _box_hit(
+        self, i: int, which: Ints, origins: Floats, ways: Floats, distance: Floats, surface: Ints, normal: Floats,
+        number: int,
+    ) -> None:  # fmt: skip
+        """Let some rays, given by their index, meet one box."""
+        b = self.boxes
+        offset = origins - b.centres[i]
+        c, s = b.cosines[i], b.sines[i]
+        local = np.stack([c * offset[:, 0] + s * offset[:, 1], c * offset[:, 1] - s * offset[:, 0], offset[:, 2]])
+        way = np.stack([c * ways[:, 0] + s * ways[:, 1], c * ways[:, 1] - s * ways[:, 0], ways[:, 2]])
+        way = np.where(np.abs(way) < 1e-12, 1e-12, way)
+        half = b.halves[i][:, None]
+        one, other = (-half - local) / way, (half - local) / way
+        near, far = np.minimum(one, other), np.maximum(one, other)
+        enter, leave = near.max(axis=0), far.min(axis=0)
+        met = np.flatnonzero((enter < leave) & (enter > _SKIN) & (enter < distance[which]))
+        if not len(met):
+            return
+        axis = near[:, met].argmax(axis=0)
+        flat = np.zeros((3, len(met)))
+        flat[axis, np.arange(len(met))] = -np.sign(way[axis, met])
+        index = which[met]
+        distance[index] = enter[met]
+        surface[index] = number
+        normal[index] = np.stack([c * flat[0] - s * flat[1], s * flat[0] + c * flat[1], flat[2]], axis=1)
+
+
+def _near(boxes: Boxes, origins: Floats, ways: Floats) -> Bools:
+    """Which rays pass the ball round each box, (rays, boxes)."""
+    reach = np.einsum("ij,ij->i", boxes.halves, boxes.halves)
+    across = np.einsum("ij,ij->i", origins, origins)[:, None] + (boxes.centres**2).sum(axis=1)
+    across -= 2 * origins @ boxes.centres.T
+    along = np.einsum("ij,ij->i", origins, ways)[:, None] - ways @ boxes.centres.T
+    along *= along
+    along /= np.maximum(np.einsum("ij,ij->i", ways, ways), 1e-30)[:, None]
+    found: Bools = across - along <= 1.0001 * reach + 1e-6
+    return found
 
 
 def _wall_hit(wall: Wall, origins: Floats, ways: Floats) -> tuple[Floats, Bools]:

@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 from ..artifacts.layout import Layout
 from ..artifacts.materials import Materials, ObjectMaterials, PartMaterial
@@ -93,6 +94,12 @@ class Deciding:
                 for cell, choice in zip(cells, self.choices[name], strict=True)
             ]
 
+    def _role(self, name: str) -> str:
+        """Which part of a surface its look is for: windows keep their glass, and doors their handles."""
+        if name == "windows" or name in _ids(self.layout.windows):
+            return "frame"
+        return "door" if name == "doors" or name in _ids(self.layout.doors) else ""
+
     def written(self, text: str, kept: finishes.Materials, before: Materials) -> tuple[finishes.Materials, Materials]:
         """The looks and finishes for the room's text, and what the artifact says of them.
 
@@ -119,7 +126,7 @@ class Deciding:
                 objects.append(_kept(name, kept, before))
                 continue
             own = [names[look.expression] for look in looks[name]]
-            found.finishes[name] = finish_of(cells, own) if self.layout.proxy(name) is not None else {"": own[0]}
+            found.finishes[name] = finish_of(cells, own) if self.layout.proxy(name) is not None else {self._role(name): own[0]}
             parts = [
                 PartMaterial(
                     part=c.part, role=c.role, look=look, colour=shown.code, why=choice.why, source=choice.source
@@ -137,6 +144,10 @@ class Deciding:
             n: before.looks.get(n, e) for n, e in found.looks.items() if n not in kept.looks or n in before.looks
         }
         return found, Materials(objects=objects, looks=as_made, finishes=ours, findings=self.answered.findings)
+
+
+def _ids(lines: Iterable[Any]) -> set[str]:
+    return {line.id for line in lines}
 
 
 def fittings_of(layout: Layout) -> set[str]:

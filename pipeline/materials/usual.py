@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import functools
 import re
 
 from ..artifacts.objects import ObjectDescription
@@ -49,13 +50,16 @@ def by_name(cell: Cell, category: str) -> str:
     return "glass" if cell.role == "glass" or words & {"glass", "glazing", "pane"} else ""
 
 
+_look_of = functools.lru_cache(maxsize=1024)(usual_look)
+
+
 def usual(cell: Cell, described: ObjectDescription, category: str, object_family: str, code: str) -> Choice:
     """What a part is made of by role and words.
 
     Args:
         object_family: of the object's category. code: the part's colour, six sRGB digits, "" for the usual one.
     """
-    plain = usual_look(cell.material, object_family) or usual_look(
+    plain = _look_of(cell.material, object_family) or _look_of(
         f"{cell.role} #{code or 'A9A39B'}".strip(), object_family
     )
     family = plain.name if plain is not None else "plastic"

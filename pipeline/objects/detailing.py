@@ -19,6 +19,7 @@ from ..artifacts.objects import (
 from ..errors import ProgramError
 from ..program.evaluate import evaluate
 from ..program.limits import FINISHED_ROOM_LIMITS
+from ..program.lines import parse_layout
 from .alike import alike, groups
 from .cloths import furnish_line
 from .library import PLAIN, Made, asked_piece, best_piece
@@ -150,6 +151,7 @@ class Detailing:
         for _ in range(3):
             try:
                 evaluate(text, FINISHED_ROOM_LIMITS)
+                parse_layout(text)
                 return text
             except ProgramError as error:
                 message = str(error)[:200]

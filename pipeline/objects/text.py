@@ -16,7 +16,7 @@ from ..artifacts.layout import Layout
 from ..library import catalogue
 from ..program.finishes import present_names, without_finishes_of_nothing
 from ..program.limits import FINISHED_ROOM_LIMITS
-from ..program.lines import LINE_TYPES, called_name, print_layout
+from ..program.lines import LINE_TYPES, called_name, parse_layout, print_layout
 from ..program.parse_safe import names_read, parse
 from ..program.prelude.registry import RESERVED
 
@@ -142,6 +142,8 @@ def relaid(text: str, layout: Layout) -> str:
     Raises:
         ProgramError: as `read_modelling`.
     """
+    if layout == parse_layout(text):
+        return text
     old = read_modelling(text)
     others = without_finishes_of_nothing(old.others, present_names(layout))
     if not old.furnished and not any(statement.startswith("finish(") for statement in others):

@@ -19,7 +19,7 @@ from ..errors import ProgramError
 from .check import Checker
 from .limits import DEFAULT_LIMITS, FINISHED_ROOM_LIMITS, Limits, Meter
 from .names import check_lines, check_names
-from .parse_safe import TOO_DEEP, parse
+from .parse_safe import TOO_DEEP, parse, uncollected
 from .prelude.budget import vertex_budget
 from .prelude.record import Record
 from .prelude.recorder import Recorder
@@ -132,7 +132,8 @@ class Evaluation:
             complete: whether no other piece follows. If one does, names that are not known yet may be used in defs.
         """
         try:
-            run = self._compile(text, complete)
+            with uncollected():
+                run = self._compile(text, complete)
         except (RecursionError, MemoryError):
             raise ProgramError(TOO_DEEP, 0, "Give parts of it a name in statements before.") from None
         self._run(lambda: run(self._top))

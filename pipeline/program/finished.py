@@ -12,6 +12,7 @@ import re
 from itertools import pairwise
 
 from ..errors import ProgramError
+from .lines import WIDTH as LINE_WIDTH
 from .lines import layout_statements, parse_line, print_line, rounded_line
 from .narrowing import narrowed
 from .wrapping import has_comment, wrapped, written
@@ -31,29 +32,34 @@ def finished(text: str) -> str:
     if "\r" in text or "\f" in text or _share_lines(tree):
         return text
     said = [has_comment(line) for line in lines]
-    spans = {n.name: (n.lineno - 1, n.end_lineno or n.lineno) for n in tree.body if isinstance(n, ast.FunctionDef)}
-    count = sum(isinstance(n, ast.FunctionDef) for n in tree.body)
-    if count != len(spans):
+    functions = [n for n in tree.body if isinstance(n, ast.FunctionDef)]
+    if len({n.name for n in functions}) < len(functions):
         return text  # a name given twice
-    briefly = [line for line in _brief_lines(tree) if not any(said[line[0] : line[1]])]
-    changed = narrowed(tree, [name for name, (start, end) in spans.items() if any(said[start:end])])
+    new: dict[tuple[int, int], str | None] = {
+        (start, end): printed for start, end, printed in _brief_lines(tree) if not any(said[start:end])
+    }
+    for span in (_span(n) for n in tree.body if not isinstance(n, ast.FunctionDef)):
+        if span not in new and max(map(len, lines[slice(*span)])) > LINE_WIDTH:
+            new[span] = wrapped("\n".join(lines[slice(*span)]))
+    spans = [(n.name, _span(n)) for n in functions]
+    changed = narrowed(tree, [name for name, span in spans if any(said[slice(*span)])])
     kept = {n.name: n for n in tree.body if isinstance(n, ast.FunctionDef)}
-    spans |= {f"line {start}": (start, end) for start, end, _ in briefly}
-    printed = {f"line {start}": line for start, _, line in briefly}
-    for name, (start, end) in sorted(spans.items(), key=lambda item: -item[1][0]):
-        if name in printed:
-            lines[start:end] = printed[name].split("\n")
+    for name, (start, end) in spans:
+        if name in kept:
+            source = written(kept[name]) if name in changed else "\n".join(lines[start:end])
+            new[start, end] = wrapped(_strict(_titled(source)))
             continue
-        if name not in kept:
-            while end < len(lines) and not lines[end].strip():
-                end += 1
-            lines[start:end] = []
-            continue
-        source = "\n".join(lines[start:end])
-        if name in changed:
-            source = written(kept[name])
-        lines[start:end] = wrapped(_strict(_titled(source))).split("\n")
+        while end < len(lines) and not lines[end].strip():
+            end += 1
+        new[start, end] = None
+    for (start, end), result in sorted(new.items(), reverse=True):
+        lines[start:end] = [] if result is None else result.split("\n")
     return "\n".join(lines)
+
+
+def _span(node: ast.stmt) -> tuple[int, int]:
+    """The first line of a statement and the line after its last, from 0."""
+    return node.lineno - 1, node.end_lineno or node.lineno
 
 
 def _share_lines(tree: ast.Module) -> bool:
@@ -65,7 +71,7 @@ def _brief_lines(tree: ast.Module) -> list[tuple[int, int, str]]:
     """(first line, line after the last, text) of the layout lines, without what is the default of the language."""
     try:
         return [
-            (s.node.lineno - 1, s.node.end_lineno or s.node.lineno, printed)
+            (*_span(s.node), printed)
             for s in layout_statements(tree)
             if parse_line(printed := print_line(s.line, brief=True)) == rounded_line(s.line) == s.line
         ]

@@ -69,6 +69,19 @@ class Folder(ast.NodeTransformer):
         keys = [None if key is None else value_of(key) for key in node.value.keys]
         return node.value.values[keys.index(known)] if None not in keys and keys.count(known) == 1 else node
 
+    def visit_JoinedStr(self, node: ast.JoinedStr) -> ast.expr:
+        """A text with plain texts put into it."""
+        self.generic_visit(node)
+        values: list[ast.expr] = []
+        for value in node.values:
+            if isinstance(value, ast.FormattedValue) and value.conversion < 0 and value.format_spec is None:
+                known = value_of(value.value)
+                value = ast.Constant(str(known[0])) if known is not None and isinstance(known[0], LITERALS) else value
+            if isinstance(value, ast.Constant) and values and isinstance(values[-1], ast.Constant):
+                value = ast.Constant(str(values.pop().value) + str(value.value))  # type: ignore[attr-defined]
+            values.append(value)
+        return values[0] if len(values) == 1 and isinstance(values[0], ast.Constant) else ast.JoinedStr(values)
+
     def visit_If(self, node: ast.If) -> Any:
         """A branch."""
         self.generic_visit(node)

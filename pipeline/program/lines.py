@@ -30,8 +30,10 @@ from ..artifacts.layout import (
 )
 from ..errors import ProgramError
 from .limits import FINISHED_ROOM_LIMITS
+from .names import is_local
 from .parse_safe import names_read, parse
 from .prelude.recorder import Recorder
+from .scopes import Binder, Scope
 
 DECIMALS = 4
 FINE_DECIMALS = 9
@@ -275,16 +277,28 @@ def layout_statements(tree: ast.Module, text: str = "") -> list[Statement]:
         if isinstance(node, ast.Expr) and isinstance(node.value, ast.Call) and name in LINE_TYPES:
             plain.add(id(node.value))
             statements.append(_statement(recorder, name, node, node.value))
-    for inner in ast.walk(ast.Module(_may_have_lines(tree, text), [])):
-        if not isinstance(inner, ast.Call) or not isinstance(inner.func, ast.Name) or id(inner) in plain:
-            continue
-        if inner.func.id in LINE_TYPES:
-            raise ProgramError(
-                f"{inner.func.id}(...) is a layout line: write each as a statement of its own at the left margin, "
-                "not in a loop, a function or an expression",
-                inner.lineno,
-            )
+    misplaced = [
+        inner.func
+        for inner in ast.walk(ast.Module(_may_have_lines(tree, text), []))
+        if isinstance(inner, ast.Call) and id(inner) not in plain
+        and isinstance(inner.func, ast.Name) and inner.func.id in LINE_TYPES
+    ]  # fmt: skip
+    for name in _not_local(tree, misplaced):
+        raise ProgramError(
+            f"{name.id}(...) is a layout line: write each as a statement of its own at the left margin, "
+            "not in a loop, a function or an expression",
+            name.lineno,
+        )
     return statements
+
+
+def _not_local(tree: ast.Module, names: list[ast.Name]) -> list[ast.Name]:
+    """Those of these names that mean the language's own words: a def may call something of its own by such a name."""
+    if not names:
+        return []
+    found = Binder(Scope(None)).run(tree)
+    scopes = {id(use): scope for use, scope in found.uses}
+    return [n for n in names if id(n) not in scopes or not is_local(n.id, scopes[id(n)], found.module)]
 
 
 def _may_have_lines(tree: ast.Module, text: str) -> list[ast.stmt]:

@@ -92,9 +92,14 @@ class Reuse:
                 return plain(id, known, lying)
             size = size_of(id) if isinstance(id, str) and callable(shapes) else None
             if size is not None:
+                key = (self.closures[id], tuple(size)) if id in self.closures else None
+                alike = STORE.find(key) if key is not None else None  # what stands above may be just the same
+                if alike is not None:
+                    spend_vertices(sum(shape.vertex_count for shape in alike))
+                    return plain(id, alike, lying)
                 shapes = flat_shapes("furnish", shapes(size))
-                if id in self.closures and shapes:
-                    STORE.keep((self.closures[id], tuple(size)), shapes)
+                if key is not None and shapes:
+                    STORE.keep(key, shapes)
             return plain(id, shapes, lying)
 
         return furnish

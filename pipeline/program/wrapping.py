@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import ast
+import copy
 import io
 import re
 import tokenize
@@ -22,10 +23,10 @@ def wrapped(text: str, width: int = WIDTH) -> str:
     depth, in_text = 0, False
     for line in text.split("\n"):
         quotes = line.count('"""')
-        whole = not depth and not in_text and not quotes and _depth(line) == 0
+        whole = not in_text and not quotes and _depth(line) == 0
         in_text ^= quotes % 2 == 1
         depth += 0 if quotes or in_text else _depth(line)
-        found += _broken(line, width) if whole and len(line) > width and not has_comment(line) else [line]
+        found += _broken(line, width, depth > 0) if whole and len(line) > width and not has_comment(line) else [line]
     result = "\n".join(found)
     try:
         same = ast.dump(ast.parse(result)) == ast.dump(ast.parse(text))
@@ -49,8 +50,14 @@ def _piecewise(text: str, width: int) -> str:
 
 
 def written(node: ast.AST) -> str:
-    """A statement as text, with strings in double quotes and no brackets round what `f(x for x in y)` is given."""
-    code = _in_double_quotes(ast.unparse(node))
+    """A statement as text, with strings in double quotes and no brackets round what `f(x for x in y)` is given.
+
+    It is the same whatever Python it is written by, and every Python that Blender has can read it.
+    """
+    texts = _Formatted()
+    code = _in_double_quotes(ast.unparse(texts.visit(copy.deepcopy(node))))
+    for name, text in reversed(texts.found.items()):
+        code = code.replace(name, text)
     lines = code.split("\n")
     for at, line in enumerate(lines):
         bare = _bare_generators(line)
@@ -59,6 +66,39 @@ def written(node: ast.AST) -> str:
             if ast.dump(ast.parse("\n".join(tried))) == ast.dump(ast.parse(code)):
                 lines = tried
     return "\n".join(lines)
+
+
+class _Formatted(ast.NodeTransformer):
+    """Puts names in the place of f-strings, whose text would depend on the Python that writes it."""
+
+    def __init__(self) -> None:
+        self.found: dict[str, str] = {}
+
+    def visit_JoinedStr(self, node: ast.JoinedStr) -> ast.expr:
+        """An f-string."""
+        text = _f_string(node)
+        if text is None:
+            return node
+        name = f"__f{len(self.found)}__"
+        self.found[name] = f'f"{text}"'
+        return ast.Name(name)
+
+
+def _f_string(node: ast.JoinedStr) -> str | None:
+    """What stands between the quotes of an f-string, None for those with quotes within quotes."""
+    parts: list[str] = []
+    for value in node.values:
+        if isinstance(value, ast.Constant):
+            parts.append(quoted(str(value.value))[1:-1].replace("{", "{{").replace("}", "}}"))
+        elif isinstance(value, ast.FormattedValue):
+            inner, spec = ast.unparse(value.value), ""
+            if isinstance(value.format_spec, ast.JoinedStr):
+                spec = ":" + (_f_string(value.format_spec) or "")
+            if '"' in inner or "\\" in inner or "\n" in inner or spec == ":":
+                return None
+            sign = f"!{chr(value.conversion)}" if value.conversion >= 0 else ""
+            parts.append(f"{{{' ' if inner.startswith('{') else ''}{inner}{sign}{spec}}}")
+    return "".join(parts)
 
 
 def _bare_generators(line: str) -> str:
@@ -81,14 +121,13 @@ def _bare_generators(line: str) -> str:
 def _in_double_quotes(code: str) -> str:
     """A program with its short strings in double quotes, where that changes nothing else."""
     rows = code.split("\n")
+    depth = 0  # Python 3.12 and later take f-strings apart
     for token in reversed(list(tokenize.generate_tokens(io.StringIO(code).readline))):
-        if token.type == tokenize.STRING and token.start[0] == token.end[0] and token.string.startswith("'"):
+        kind = tokenize.tok_name[token.type]
+        depth += (kind == "FSTRING_END") - (kind == "FSTRING_START")
+        if kind == "STRING" and not depth and token.start[0] == token.end[0] and token.string.startswith("'"):
             row, start, end = token.start[0] - 1, token.start[1], token.end[1]
             rows[row] = rows[row][:start] + quoted(ast.literal_eval(token.string)) + rows[row][end:]
-        elif token.type == tokenize.STRING and token.string.startswith("f'") and '"' not in token.string:
-            row, start, end = token.start[0] - 1, token.start[1], token.end[1]
-            if "\\" not in token.string:
-                rows[row] = rows[row][:start] + f'f"{token.string[2:-1]}"' + rows[row][end:]
     return "\n".join(rows)
 
 

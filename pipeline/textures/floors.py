@@ -75,6 +75,8 @@ def _seen_floor(shown: Shown, face: Face) -> Rectified:
 
 def _in_full(shown: Shown, face: Face, looked: Rectified) -> Rectified:
     """The same as sharp as the picture has it."""
+    if looked.scale < _LOOKED_AT - 1e-9:
+        return looked  # a large floor, or a coarse picture: there is no more to be seen
     seen = shown.see(face)
     kept = resized(looked.seen.astype(np.float32), (seen.seen.shape[1], seen.seen.shape[0])) > 0.75
     return shown.part(seen, kept)

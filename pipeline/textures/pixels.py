@@ -74,12 +74,19 @@ def blurred(values: Pixels, sigma: float, wrap: bool = False) -> Pixels:
 
 def box_filtered(values: NDArray[np.float64], radius: int, axis: int, wrap: bool) -> NDArray[np.float64]:
     """The mean over `radius` values to both sides along an axis."""
-    pad = [(0, 0)] * values.ndim
-    pad[axis] = (radius + 1, radius)
-    sums = np.pad(values, pad, mode="wrap" if wrap else "edge")
-    np.cumsum(sums, axis=axis, out=sums)
     length, window = values.shape[axis], 2 * radius + 1
     before = (slice(None),) * axis
+    sums: NDArray[np.float64]
+    if wrap:
+        pad = [(0, 0)] * values.ndim
+        pad[axis] = (radius + 1, radius)
+        sums = np.pad(values, pad, mode="wrap")
+    else:
+        sums = np.empty((*values.shape[:axis], length + window, *values.shape[axis + 1 :]))
+        sums[(*before, slice(radius + 1))] = values[(*before, slice(1))]
+        sums[(*before, slice(radius + 1, radius + 1 + length))] = values
+        sums[(*before, slice(radius + 1 + length, None))] = values[(*before, slice(length - 1, length))]
+    np.cumsum(sums, axis=axis, out=sums)
     found: NDArray[np.float64] = sums[(*before, slice(window, window + length))] - sums[(*before, slice(length))]
     found /= window
     return found

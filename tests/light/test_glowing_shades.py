@@ -45,7 +45,8 @@ def strengths(program: str, layout: Layout) -> dict[str, dict[str, float]]:
 def test_one_look_that_both_wear_becomes_one_that_glows_and_one_that_does_not() -> None:
     layout = room()
     given = 'cloth_1 = shade("#CCBBAA", warm="#FFC080")\n' + "".join(
-        f'finish("{name}", {{"shade": cloth_1, "bulb": cloth_1, "steel": metal("#888888")}})\n' for name in ("on", "off")
+        f'finish("{name}", {{"shade": cloth_1, "bulb": cloth_1, "steel": metal("#888888")}})\n'
+        for name in ("on", "off")
     )
     found = strengths(text(layout, given), layout)
     assert found["off"] == {"shade": 0.0, "bulb": 0.0}

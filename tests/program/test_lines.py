@@ -6,6 +6,7 @@ from __future__ import annotations
 import pytest
 from code_as_room.pipeline.artifacts.layout import ProxyLine, RoomLine
 from code_as_room.pipeline.errors import ProgramError
+from code_as_room.pipeline.program.evaluate import evaluate
 from code_as_room.pipeline.program.lines import parse_layout, print_layout, print_line, quoted
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -97,3 +98,23 @@ def test_any_text_is_read_or_refused(text: str) -> None:
         parse_layout(text)
     except ProgramError as error:
         assert error.message
+
+
+def test_a_function_may_call_something_of_its_own_by_a_lines_name() -> None:
+    own = """
+def tent_1(size):
+    def door(u, v):
+        return (u, 0, v)
+    wall = [door(0, 0), door(1, 0), door(1, 1)]
+    return [part("trim", tube(wall, 0.01), material="fabric")]
+
+
+proxy("tent_1", "tent", centre=(0, 0, 0.5), size=(1, 1, 1))
+furnish("tent_1", tent_1)
+build()
+"""
+    assert [p.id for p in parse_layout(ROOM + own).proxies] == ["tent_1"]
+    assert evaluate(ROOM + own).furnished["tent_1"]
+    outside = own.replace("    def door(u, v):\n        return (u, 0, v)\n", "")
+    with pytest.raises(ProgramError, match="layout line"):
+        parse_layout(ROOM + outside)

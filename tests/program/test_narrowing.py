@@ -118,6 +118,15 @@ def test_statements_are_written_as_a_person_would() -> None:
     assert written(ast.parse(code)) == 'x = sum(f(a) for a in b) + tuple(((1, 2), 3))[0] + len("a\\"b") + len("c")'
 
 
+def test_texts_with_values_in_them_can_be_read_by_every_python() -> None:
+    code = 'x = f\'{a["b"]:.2f} {{c}} "d" {e!r:>{w}} { {1: 2}[f] }\''
+    short = written(ast.parse(code))
+    assert short == 'x = f"{a[\'b\']:.2f} {{c}} \\"d\\" {e!r:>{w}} { {1: 2}[f]}"'
+    assert ast.dump(ast.parse(short)) == ast.dump(ast.parse(code))
+    text = narrow('def f(size, kind="round", n=3):\n    return part(f"{kind} leg {n}", box(1))\n\n\nfurnish("a", f)\n')
+    assert "part('round leg 3', box(1))" in text
+
+
 def test_layout_lines_say_no_defaults() -> None:
     text = (
         HEAD
@@ -141,3 +150,14 @@ def test_what_somebody_says_in_comments_stays() -> None:
 def test_statements_that_share_a_line_stay() -> None:
     text = HEAD + 'proxy("a", "b", centre=(0, 0, 1), size=(1, 1, 2), yaw=0); build()\n'
     assert finished(text) == text
+
+
+def test_long_statements_of_the_room_are_broken_too() -> None:
+    look = 'look = principled(base=ramp(noise_map(0.1), [(0, "#101010"), (0.5, "#808080"), (1, "#F0F0F0")]), '
+    look += "roughness=0.5, coat=0.2, sheen=0.1, specular=0.4)"
+    text = HEAD + look + '\nfinish("floor", look)\n'
+    text += f'finish("walls", {{\n    "": {look[7:]},\n    "wood": look,\n}})\nbuild()\n'
+    short = finished(text)
+    assert max(map(len, short.split("\n"))) <= 120 < len(look)
+    one, other = (evaluate(t, FINISHED_ROOM_LIMITS).finishes["floor"][""] for t in (text, short))
+    assert one.key == other.key

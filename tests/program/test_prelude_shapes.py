@@ -241,3 +241,18 @@ def test_a_shape_nested_in_itself_is_refused() -> None:
     endless.append(endless)
     with pytest.raises(ValueError, match="too many shapes"):
         Recorder().furnish("bed_1", endless)
+
+
+def test_an_edge_may_be_given_where_the_reference_lists_it() -> None:
+    from code_as_room.pipeline.program.prelude import profiles, solids
+
+    square = [(0, 0), (1, 0), (1, 1), (0, 1)]
+    for by_place, by_name in (
+        (solids.cylinder(0.1, 0.4, 0.01), solids.cylinder(0.1, 0.4, edge=0.01)),
+        (solids.cone(0.1, 0.4, 0.05, 0.01), solids.cone(0.1, 0.4, 0.05, edge=0.01)),
+        (solids.prism(6, 0.1, 0.4, 0.01), solids.prism(6, 0.1, 0.4, edge=0.01)),
+        (solids.torus(0.3, 0.05, 90), solids.torus(0.3, 0.05, angle=90)),
+        (profiles.extrude(square, 0.4, 0.01), profiles.extrude(square, 0.4, edge=0.01)),
+    ):
+        assert by_place.vertices.tolist() == by_name.vertices.tolist() and by_place.faces == by_name.faces
+    assert solids.cylinder(0.1, 0.4, (1, 0, 0)).vertices[:, 0].min() > 0.8

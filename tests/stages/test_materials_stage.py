@@ -97,6 +97,7 @@ def test_an_answer_decides_families_and_its_nonsense_costs_nothing(run: Run, ans
             {"id": "chair", "parts": [{"part": "wing", "material": "fur"}, {"part": "", "program": "while 1: pass"}]},
             {"id": "floor", "parts": [{"part": "", "material": "marble", "color": "#E0E0E0", "veto": "glare"}]},
             {"id": "doors", "parts": [{"part": "", "material": "oak"}]},
+            {"id": "windows", "parts": [{"part": "", "material": "painted_wood"}]},
             {"id": "nobody", "parts": []},
         ],
     }
@@ -104,6 +105,8 @@ def test_an_answer_decides_families_and_its_nonsense_costs_nothing(run: Run, ans
     made = record(texts(run)[1])
     closet = {look.colour for key, look in made.finishes["closet"].items() if look.name == "wood"}
     assert closet == {"#2A2522"} and made.finishes["floor"][""].name == "marble"
+    # Glass stays glass, and handles stay metal.
+    assert set(made.finishes["windows"]) == {"frame"} and set(made.finishes["doors"]) == {"door"}
     assert {"chair", "materials"} <= {f.about for f in materials(run).findings}
     assert len([p for p in answers.asked if p.key.startswith("08_materials")]) <= 2 * MOST_CALLS
 

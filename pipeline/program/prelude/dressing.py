@@ -67,14 +67,14 @@ def dressed(shapes: list[Shape], *finishes: dict[str, Look]) -> list[Shape]:
     if not finishes:
         return shapes
     looks = [look_of_role(shape.material, finishes, shape.part) for shape in shapes]
-    whole = {
-        look: [s for s, other in zip(shapes, looks, strict=True) if other == look] for look in looks if look is not None
-    }
+    filling: dict[str, bool] = {}
     found = []
     for shape, look in zip(shapes, looks, strict=True):
         if look is not None:
-            if any(fills(value) for _, value in look.inputs):
-                shape = filled(shape, whole[look])
+            if look.key not in filling:
+                filling[look.key] = any(fills(value) for _, value in look.inputs)
+            if filling[look.key]:
+                shape = filled(shape, [s for s, other in zip(shapes, looks, strict=True) if other == look])
             shape = recoloured(shape, f"{shape.material}{MARK}{look.key}")
         found.append(shape)
     return found

@@ -13,7 +13,7 @@ from .checks import choice, fail, flag, is_number, number, point, positive, whol
 from .polygons import bridged, ears, merged
 from .rings import AXES, Faces, circle, crease_of, revolve, ring_sizes, ringed, skin
 from .shape import Floats, Shape
-from .solids import MOST_SEGMENTS, ORIGIN, RIM_STEPS
+from .solids import MOST_SEGMENTS, ORIGIN, RIM_STEPS, at_and
 
 MOST_POINTS = 20_000
 
@@ -69,6 +69,7 @@ def extrude(
     Args:
         edge: rounds the edges of both ends, less than half of the thinnest part. holes: outlines that go through, without edge.
     """  # fmt: skip
+    at, edge = at_and(at, edge)
     corners = ring_of("extrude", "outline", outline)
     depth = positive("extrude", "height", height)
     place = {"x": (1, 2, 0), "y": (0, 2, 1), "z": (0, 1, 2)}[choice("extrude", "axis", axis, AXES)]

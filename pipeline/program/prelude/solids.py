@@ -20,6 +20,14 @@ BOX_CORNERS = np.array([(x, y, z) for z in (-1, 1) for x, y in ((-1, -1), (1, -1
 BOX_FACES: Faces = [(3, 2, 1, 0), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]
 
 
+def at_and(at: Any, value: Any) -> tuple[Any, Any]:
+    """`at` and the number that has its place in the reference, which lists what every shape takes only once.
+
+    A number where `at` is expected can only mean the other one: cylinder(0.1, 0.4, 0.005) has an edge of 5 mm.
+    """
+    return (ORIGIN, at) if is_number(at) else (at, value)
+
+
 def box(size: Any, at: Any = ORIGIN) -> Shape:
     """size is (width x, depth y, height z)."""
     half = np.array(sizes("box", "size", size)) / 2
@@ -75,6 +83,7 @@ def rounded_ends(steps: int, columns: int, last: int) -> list[tuple[int, ...]]:
 
 def cylinder(radius: Any, height: Any, at: Any = ORIGIN, segments: Any = 24, axis: Any = "z", edge: Any = 0.0) -> Shape:
     """edge rounds the rims."""
+    at, edge = at_and(at, edge)
     return frustum("cylinder", positive("cylinder", "radius", radius), None, height, at, segments, axis, edge)
 
 
@@ -83,6 +92,7 @@ def cone(
     edge: Any = 0.0,
 ) -> Shape:  # fmt: skip
     """Cut off where top_radius is above 0."""
+    at, edge = at_and(at, edge)
     bottom, top = number("cone", "radius", radius, 0.0), number("cone", "top_radius", top_radius, 0.0)
     if bottom == 0 and top == 0:
         raise fail("cone", "radius and top_radius must not both be 0")
@@ -127,6 +137,7 @@ def rounded_rims(profile: list[tuple[float, float]], edge: float) -> list[tuple[
 
 def prism(sides: Any, radius: Any, height: Any, at: Any = ORIGIN, axis: Any = "z", edge: Any = 0.0) -> Shape:
     """On a regular polygon, radius to a corner; edge rounds the ends."""
+    at, edge = at_and(at, edge)
     count = whole("prism", "sides", sides, 3, MOST_SEGMENTS)
     half, across = positive("prism", "height", height) / 2, positive("prism", "radius", radius)
     profile = rounded_rims([(across, -half), (across, half)], number("prism", "edge", edge, 0.0))
@@ -188,6 +199,7 @@ def torus(
 
     Round "x" an arc begins at +Y, round "y" at +Z.
     """
+    at, angle = at_and(at, angle)
     middle, bend = positive("torus", "radius", radius), positive("torus", "thickness", thickness)
     if bend >= middle:
         raise fail("torus", "thickness, the tube's own radius, must be smaller than radius")
