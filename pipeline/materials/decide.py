@@ -126,7 +126,9 @@ class Deciding:
                 objects.append(_kept(name, kept, before))
                 continue
             own = [names[look.expression] for look in looks[name]]
-            found.finishes[name] = finish_of(cells, own) if self.layout.proxy(name) is not None else {self._role(name): own[0]}
+            found.finishes[name] = (
+                finish_of(cells, own) if self.layout.proxy(name) is not None else {self._role(name): own[0]}
+            )
             parts = [
                 PartMaterial(
                     part=c.part, role=c.role, look=look, colour=shown.code, why=choice.why, source=choice.source
