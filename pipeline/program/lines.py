@@ -283,11 +283,11 @@ def layout_statements(tree: ast.Module, text: str = "") -> list[Statement]:
         if isinstance(inner, ast.Call) and id(inner) not in plain
         and isinstance(inner.func, ast.Name) and inner.func.id in LINE_TYPES
     ]  # fmt: skip
-    for name in _not_local(tree, misplaced):
+    for word in _not_local(tree, misplaced):
         raise ProgramError(
-            f"{name.id}(...) is a layout line: write each as a statement of its own at the left margin, "
+            f"{word.id}(...) is a layout line: write each as a statement of its own at the left margin, "
             "not in a loop, a function or an expression",
-            name.lineno,
+            word.lineno,
         )
     return statements
 
