@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from code_as_room.pipeline.program.prelude.skirting import SKIRTING
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
@@ -124,9 +125,9 @@ def _some(points: Floats) -> Floats:
 
 def crossings(room: BuiltRoom) -> list[tuple[str, str, float]]:
     """Pairs of things that run through each other by more than `DEEP`, and how deep in metres; a thing and what it stands
-    on are not looked at here, nor is what lies flat on the floor."""
+    on are not looked at here, nor is what lies flat on the floor, nor the skirting, which furniture at a wall covers."""
     things = [b for b in room.things.values() if not b.flat]
-    others = [*things, *(w for w in room.walls if w.kind != "opening")]
+    others = [*things, *(w for w in room.walls if w.kind not in ("opening", SKIRTING))]
     found = []
     for i, a in enumerate(things):
         for b in others[i + 1 :]:

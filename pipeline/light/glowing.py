@@ -13,16 +13,17 @@ from ..program import finishes
 from ..program.prelude.palette import ROLE_COLOURS, split_role
 from ..program.prelude.shape import Shape
 
-SHADE, BULB = 0.8, 3.0
-"""Strength of a shade and of a bare bulb that are on, at exposure 0."""
+BULB = 3.0
+"""Strength of a bulb in its shade that is on, at exposure 0."""
+_USUAL = {"shade": 0.8, "glow": 6.0}  # of looks that say nothing of it, as in the language
 _LEAST, _MOST = 0.05, 40.0
 _BULB = "bulb"
 
 
 def switched(text: str, layout: Layout, lamps: Sequence[ProxyLine], shapes: Mapping[str, Sequence[Shape]]) -> str:
-    """The room text with lamps whose shades glow or not, as their lights shine or not.
+    """The room text with lamps whose shades and bulbs glow or not, as their lights shine or not.
 
-    A shade whose strength is written out stays as it is. A text that this would spoil stays.
+    A strength that is written out counts at exposure 0. A text that this would spoil stays.
 
     Args:
         layout: its lights say which lamps are on, its view how it is exposed. shapes: the parts of each object, by id.
@@ -61,13 +62,12 @@ def _unfinished(shapes: Sequence[Shape]) -> dict[str, str]:
 
 
 def _glowing(looks: finishes.Materials, look: str, bulb: bool, lit: bool, exposure: float, taken: set[str]) -> str:
-    """The look, or the name of one like it that glows as it should; others than shades stay."""
+    """The look, or the name of one like it that glows as it should; what does not shine by itself stays."""
     written = looks.looks.get(look, look)
-    strength = _strength(bulb, lit, exposure)
-    if strength == SHADE or not _may_change(written):
+    expression = _at_strength(written, bulb, lit, exposure)
+    if expression in (None, written):
         return look
-    inside = written.removeprefix("shade(").removesuffix(")").strip().rstrip(",")
-    expression = f"shade({inside}{', ' if inside else ''}strength={strength:g})"
+    assert expression is not None
     if look not in looks.looks:
         return expression
     known = next((name for name, other in looks.looks.items() if other == expression), None)
@@ -83,22 +83,35 @@ def _glowing(looks: finishes.Materials, look: str, bulb: bool, lit: bool, exposu
     return name
 
 
-def _may_change(expression: str) -> bool:
-    """Whether this is a shade that says nothing of its strength."""
+def _at_strength(written: str, bulb: bool, lit: bool, exposure: float) -> str | None:
+    """The expression of a shade or a glow with the strength that it should have, None for all others."""
     try:
-        call = ast.parse(expression, mode="eval").body
+        call = ast.parse(written, mode="eval").body
     except SyntaxError:
-        return False
-    named = isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id == "shade"
-    if not named or not isinstance(call, ast.Call) or not expression.startswith("shade("):
-        return False
-    return len(call.args) < 2 and all(k.arg in ("color", "warm") for k in call.keywords)
+        return None
+    if not isinstance(call, ast.Call) or not isinstance(call.func, ast.Name) or call.func.id not in _USUAL:
+        return None
+    given = [*call.args[1:2], *(k.value for k in call.keywords if k.arg == "strength")]
+    usual = BULB if bulb and call.func.id == "shade" else _USUAL[call.func.id]
+    if given and (not isinstance(given[0], ast.Constant) or not isinstance(given[0].value, int | float)):
+        return None
+    value = given[0].value if given and isinstance(given[0], ast.Constant) else usual
+    strength = _rounded(float(value) * 2.0**-exposure) if lit and isinstance(value, int | float) else 0.0
+    if not given and strength == _USUAL[call.func.id]:
+        return written
+    if len(call.args) > 2:
+        return None  # more than the color and the strength by their places
+    inside = [_source(written, argument) for argument in call.args[:1]]
+    inside += [f"{k.arg}={_source(written, k.value)}" for k in call.keywords if k.arg != "strength"]
+    return f"{call.func.id}({', '.join([*inside, f'strength={strength:g}'])})"
 
 
-def _strength(bulb: bool, lit: bool, exposure: float) -> float:
-    if not lit:
-        return 0.0
-    return float(f"{min(_MOST, max(_LEAST, (BULB if bulb else SHADE) * 2.0**-exposure)):.2g}")
+def _source(written: str, node: ast.expr) -> str:
+    return ast.get_source_segment(written, node) or ast.unparse(node)
+
+
+def _rounded(strength: float) -> float:
+    return float(f"{min(_MOST, max(_LEAST, strength)):.2g}")
 
 
 def _drop_unworn(changed: finishes.Materials, before: finishes.Materials) -> None:

@@ -53,7 +53,7 @@ def test_one_look_that_both_wear_becomes_one_that_glows_and_one_that_does_not() 
     assert found["on"]["shade"] > 0.5 and found["on"]["bulb"] > 2 * found["on"]["shade"]
     after = switched(text(layout, given), layout, LAMPS, {})
     assert 'warm="#FFC080"' in read_materials(after).looks["cloth_1_off"]
-    assert switched(after, layout, LAMPS, {}) == after
+    assert switched(after, layout, LAMPS, {}) == after  # at exposure 0 a second time changes nothing
 
 
 def test_lamps_without_a_finish_are_switched_too_and_keep_their_colour() -> None:
@@ -71,8 +71,21 @@ def test_the_glow_follows_the_exposure_so_that_it_looks_the_same() -> None:
     assert 15 < bright / dark < 17
 
 
-def test_a_strength_that_somebody_wrote_and_other_looks_stay() -> None:
+def test_strengths_that_are_written_out_hold_for_what_is_on_and_other_looks_stay() -> None:
+    layout = room(1.0)
+    given = "".join(
+        f'finish("{name}", {{"shade": shade("#CCBBAA", 2), "bulb": glow("#FFE3B8", strength=8), "": metal("#777777")}})\n'
+        for name in ("on", "off")
+    )
+    program = text(layout, given)
+    made = evaluate(switched(program, layout, LAMPS, evaluate(program).furnished)).finishes
+    strength = {n: {key: dict(look.inputs).get("strength", 0.0) for key, look in f.items()} for n, f in made.items()}
+    assert strength["on"] == {"shade": 1.0, "bulb": 4.0, "": 0.0}
+    assert strength["off"] == {"shade": 0.0, "bulb": 0.0, "": 0.0}
+    assert made["off"]["bulb"].colour == "#FFE3B8" and made["off"][""] == made["on"][""]
+
+
+def test_a_text_without_glowing_lamps_stays_as_it_is() -> None:
     layout = room()
-    given = 'finish("off", {"shade": shade("#CCBBAA", strength=2), "bulb": shade("#FFFFFF", 3), "": glow("#FFE3B8")})\n'
-    program = text(layout, given + 'finish("on", metal("#777777"))\n')
+    program = text(layout, 'finish("on", metal("#777777"))\nfinish("off", metal("#777777"))\n')
     assert switched(program, layout, LAMPS, evaluate(program).furnished) == program
