@@ -32,6 +32,9 @@ benchmark: setup
 	$(RUN)/code-as-room samples/bedroom/picture.png --replies samples/bedroom/replies --out out/benchmark
 	$(RUN)/python -m benchmark.layout out/benchmark/scene.json samples/bedroom/truth.json out/benchmark/memory.json
 	$(RUN)/python -m benchmark.furnished out/benchmark --truth samples/bedroom/truth.json
+	$(RUN)/python -m benchmark.colours out/benchmark
+	$(RUN)/python -m benchmark.room_size out/benchmark
+	-$(RUN)/python -m benchmark.finishing
 
 # Stages 1 to 4 replayed from the recordings of our own pictures, scored beside the direct answer.
 layout-table: setup

@@ -64,6 +64,7 @@ def see(blend: Path, long_side: int = 512, samples: int = SAMPLES) -> Seen:
         obj.pass_index = number
     with tempfile.TemporaryDirectory() as folder, shooting(scene, CAMERA, long_side, "CYCLES") as stage:
         stage.cycles.samples = samples  # at most: where nothing changes any more, Cycles stops earlier
+        stage.cycles.time_limit = 0.0  # a measure takes as long as it takes
         shown = _displayed(stage, Path(folder) / "shown.png")
         for obj in [o for o in stage.collection.objects if o.get(KIND) == CEILING]:
             stage.collection.objects.unlink(obj)  # it is seen through only by the shader that is replaced now

@@ -92,11 +92,13 @@ def _at_strength(written: str, bulb: bool, lit: bool, exposure: float) -> str | 
     if not isinstance(call, ast.Call) or not isinstance(call.func, ast.Name) or call.func.id not in _USUAL:
         return None
     given = [*call.args[1:2], *(k.value for k in call.keywords if k.arg == "strength")]
-    usual = BULB if bulb and call.func.id == "shade" else _USUAL[call.func.id]
-    if given and (not isinstance(given[0], ast.Constant) or not isinstance(given[0].value, int | float)):
+    value: object = BULB if bulb and call.func.id == "shade" else _USUAL[call.func.id]
+    if given:
+        # What was off and is on now shines as usual.
+        value = (given[0].value or value) if isinstance(given[0], ast.Constant) else None
+    if not isinstance(value, int | float):
         return None
-    value = given[0].value if given and isinstance(given[0], ast.Constant) else usual
-    strength = _rounded(float(value) * 2.0**-exposure) if lit and isinstance(value, int | float) else 0.0
+    strength = _rounded(value * 2.0**-exposure) if lit else 0.0
     if not given and strength == _USUAL[call.func.id]:
         return written
     if len(call.args) > 2:
