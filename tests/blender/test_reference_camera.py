@@ -120,7 +120,8 @@ def test_the_stand_in_is_no_edit_by_hand_and_the_program_takes_it_over(picture: 
     camera = find_reference_camera(bpy.context.scene)
     assert not is_stand_in(camera) and camera.name == name
     assert np.array(camera.matrix_basis) == pytest.approx(fitted, abs=1e-6)
-    assert [c.name for c in bpy.data.cameras] == [camera.data.name], "the build made no second camera"
+    views = {"top", "eye_1", "eye_2"}
+    assert {c.name for c in bpy.data.cameras} == {camera.data.name} | views, "the build made no second reference"
     assert len(camera.data.background_images) == 1
     assert ResolvedScene(bpy.context.scene).read_back() == []
 
@@ -149,14 +150,15 @@ def test_the_frame_is_that_of_the_camera_model_with_shift_and_tilt(picture: str)
     assert apart.min(axis=0).max() < 1e-4 and apart.min(axis=1).max() < 1e-4
 
 
-def test_the_written_blend_holds_one_camera_and_one_picture(picture: str, tmp_path: Path) -> None:
+def test_the_written_blend_holds_one_reference_camera_and_one_picture(picture: str, tmp_path: Path) -> None:
     load(picture)
     bpy.context.scene.code_as_room.iterations = 1
     bpy.ops.code_as_room.run_all()
     bpy.ops.code_as_room.write_outputs(directory=str(tmp_path / "out"))
     bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "out" / "room.blend"))
-    assert [camera.name for camera in bpy.data.cameras] == ["reference"]
-    assert [bool(image.packed_file) for image in bpy.data.images if image.type == "IMAGE"] == [True]
+    assert sorted(camera.name for camera in bpy.data.cameras) == ["eye_1", "eye_2", "reference", "top"]
+    assert all(image.packed_file for image in bpy.data.images if image.type == "IMAGE")
+    assert len([image for image in bpy.data.images if image.name.startswith("Reference")]) == 1
     assert bpy.context.scene.camera == find_reference_camera(bpy.context.scene)
 
 
