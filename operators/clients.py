@@ -84,21 +84,37 @@ def client_settings() -> ClientSettings:
 
 def key_source(preferences: Any) -> str:
     """Name of the environment variable that the key comes from; "" when the typed one is used."""
-    variable = str(preferences.key_variable).strip()
-    if variable or str(preferences.api_key).strip():
-        return variable
     usual = own_key_variable(preset(preferences.provider), preferences.base_url)
+    return variable_of(preferences.key_variable, preferences.api_key, usual)
+
+
+def variable_of(named: str, typed: str, usual: str) -> str:
+    """Name of the environment variable that a key comes from; "" when the typed one is used.
+
+    Args:
+        named: the one that the artist names; typed: the key that they typed; usual: the service's own, "" for none.
+    """
+    if named.strip() or typed.strip():
+        return named.strip()
     return usual if usual and os.environ.get(usual, "").strip() else ""
 
 
 def _key(preferences: Any) -> str:
-    variable = key_source(preferences)
+    return key_of(key_source(preferences), preferences.api_key, "the API key")
+
+
+def key_of(variable: str, typed: str, what: str) -> str:
+    """A key from an environment variable, or as it was typed where there is none.
+
+    Raises:
+        ModelError: the variable is not set; it says what it should hold.
+    """
     if not variable:
-        return str(preferences.api_key).strip()
+        return typed.strip()
     value = os.environ.get(variable, "").strip()
     if not value:
         raise ModelError(
-            f"The environment variable {variable!r} that should hold the API key is not set.",
+            f"The environment variable {variable!r} that should hold {what} is not set.",
             "Set it before Blender starts, or type the key in the preferences.",
         )
     return value

@@ -6,7 +6,6 @@ Keys stay here, as in `clients`: they reach no scene, memory, log or report.
 
 from __future__ import annotations
 
-import os
 import threading
 from collections.abc import Callable
 from pathlib import Path
@@ -61,24 +60,12 @@ def image_settings() -> ImageSettings:
 
 def image_key_source(preferences: Any) -> str:
     """Name of the environment variable that the key comes from; "" when the typed one is used."""
-    variable = str(preferences.image_key_variable).strip()
-    if variable or str(preferences.image_api_key).strip():
-        return variable
     usual = own_key_variable(image_preset(preferences.image_provider), preferences.image_base_url)
-    return usual if usual and os.environ.get(usual, "").strip() else ""
+    return clients.variable_of(preferences.image_key_variable, preferences.image_api_key, usual)
 
 
 def _key(preferences: Any) -> str:
-    variable = image_key_source(preferences)
-    if not variable:
-        return str(preferences.image_api_key).strip()
-    value = os.environ.get(variable, "").strip()
-    if not value:
-        raise ModelError(
-            f"The environment variable {variable!r} that should hold the image model's key is not set.",
-            "Set it before Blender starts, or type the key in the preferences.",
-        )
-    return value
+    return clients.key_of(image_key_source(preferences), preferences.image_api_key, "the image model's key")
 
 
 def room_painter(picture_hash: str, spent: float) -> ImageClient | None:
