@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import json
+import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,8 @@ from code_as_room.pipeline.artifacts.analysis import Finding, SceneAnalysis
 from code_as_room.pipeline.memory import Memory, load_memory
 from code_as_room.pipeline.report import all_findings
 from PIL import Image
+
+sys.path.append(str(Path(__file__).parent))  # for what tests share: they are imported by their paths
 
 RESULTS = {"room.py", "room.blend", "scene.json", "memory.json", "top.png", "view.png", "report.html"}
 KEYS = {

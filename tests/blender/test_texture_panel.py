@@ -8,7 +8,6 @@ import json
 import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import bpy
@@ -27,6 +26,7 @@ from code_as_room.pipeline.models.image_base import ImageRequest, PaintedImage
 from code_as_room.pipeline.program.lines import print_layout
 from code_as_room.pipeline.scene.pictures import IMAGE, find_image
 from code_as_room.pipeline.stages import s09_textures
+from noted_lines import drawn
 from PIL import Image
 
 SAMPLE = Path(__file__).resolve().parents[2] / "samples" / "bedroom"
@@ -49,30 +49,6 @@ class Painter:
         buffer = io.BytesIO()
         Image.effect_noise((256, 256), 40).convert("RGB").save(buffer, "PNG")
         return PaintedImage(buffer.getvalue(), "painter-1", cost=0.04, seconds=1.0)
-
-
-class Lines:
-    """A layout that only notes what it says."""
-
-    def __init__(self, said: list[str] | None = None) -> None:
-        self.said: list[str] = [] if said is None else said
-
-    def row(self, **_: Any) -> Lines:
-        return Lines(self.said)
-
-    column = box = split = row
-
-    def label(self, text: str = "", icon: str = "NONE") -> None:
-        self.said.append(text)
-
-    def operator(self, name: str, text: str = "", icon: str = "NONE") -> Any:
-        self.said.append(text or name)
-        return SimpleNamespace()
-
-    def operator_menu_enum(self, name: str, prop: str, text: str = "", icon: str = "NONE") -> Any:
-        assert prop in getattr(bpy.ops.code_as_room, name.partition(".")[2]).get_rna_type().properties
-        self.said.append(text)
-        return SimpleNamespace()
 
 
 @pytest.fixture(scope="module")
@@ -129,15 +105,6 @@ def program() -> str:
 def ours() -> dict[str, Any]:
     images: Any = bpy.data.images
     return {str(image[IMAGE]): image for image in images if IMAGE in image}
-
-
-def drawn(panel: Any) -> str:
-    state = view_state.refresh(bpy.context.scene)
-    layout = Lines()
-    region = SimpleNamespace(width=280)
-    context = SimpleNamespace(scene=bpy.context.scene, region=region, preferences=bpy.context.preferences)
-    panel.draw_state(SimpleNamespace(), layout, context, state)
-    return " | ".join(layout.said)
 
 
 def test_images_are_in_the_file_and_on_their_surfaces_after_it_was_saved_and_opened() -> None:
