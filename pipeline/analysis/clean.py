@@ -9,6 +9,7 @@ from ..artifacts.analysis import ArchitectureItem, DetectedObject, Finding, Scen
 from ..artifacts.common import ImageBox, ImagePoint
 from ..artifacts.replies import AnalysisReply, ArchitectureReply, BoxReply, ObjectReply, PointReply
 from ..errors import PictureError, ReplyError
+from .door_leaves import without_leaves
 
 MAX_OBJECTS = 300
 MAX_METRES = 100.0
@@ -185,7 +186,7 @@ def clean_architecture(items: list[ArchitectureReply], findings: list[Finding]) 
                 thickness=max(0.02, min(1.0, item.thickness_m)),
                 wall=item.wall or None,
                 box=clean_box(item.box),
-                swing=item.swing[:20],
+                swing=item.swing[:200],
             )
         )
     return result
@@ -240,6 +241,7 @@ def clean_analysis(reply: AnalysisReply, image_size: tuple[int, int]) -> SceneAn
         findings.append(Finding(about="objects", message="No objects were recognised.", severity="warning"))
     architecture = clean_architecture(reply.architecture, findings)
     kept = _clean_objects(reply.objects[:MAX_OBJECTS], {a.id for a in architecture}, findings)
+    kept, architecture = without_leaves(kept, architecture, findings)
     zone_ids: set[str] = set()
     zones = [Zone(id=clean_id(z.id, zone_ids, "zone"), label=z.label[:80]) for z in reply.zones[:20]]
     return SceneAnalysis(

@@ -29,7 +29,8 @@ class ArchitectureItem(Artifact):
         start, end: ends of the segment (centre line for partitions, inner face for walls).
         height: top above the item's lower edge; sill: lower edge above the floor (windows).
         wall: id of the wall that a door, window or opening lies in.
-        swing: for doors, "in", "out", "sliding" or "" when unknown.
+        swing: for doors, how they open and stand, in the model's words (`layout/doors.py` reads them): "in", "out",
+            "sliding", "into the room, hinge at the right end, slightly open"; "" when unknown.
     """
 
     id: str

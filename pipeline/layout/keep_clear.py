@@ -8,9 +8,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from ..artifacts.common import Metres2
-from ..artifacts.layout import Layout, ProxyLine, WallLine
+from ..artifacts.layout import DoorLine, Layout, ProxyLine, WallLine
 from ..geometry.placement import Rect
 from ..geometry.polygon import area, intersection_area
+from .doors import opens_in
 from .standing import FLAT
 
 PASSAGE = 0.35
@@ -18,6 +19,10 @@ PASSAGE = 0.35
 LIGHT = 0.25
 """Depth in metres before a window in which nothing stands higher than its sill."""
 SILL_GRACE = 0.1
+LEAF = 0.1
+"""Metres of depth that an open leaf keeps free."""
+RIGHT_ANGLE = 95.0
+"""Degrees up to which an open leaf stands within the square before its door, or nearly so."""
 
 
 @dataclass(frozen=True)
@@ -30,17 +35,40 @@ class Clear:
 
 
 def door_areas(layout: Layout, swings: Mapping[str, str]) -> list[Clear]:
-    """Where doors swing and passages lead; `swings` says by id "in" for leaves that come into the room."""
+    """Where doors swing and passages lead; `swings` says by id, in the analysis' words, how doors open ("in").
+
+    A leaf that stands open is believed more than words, and keeps its own place free too where that is beside the door.
+    """
     walls = {w.id: w for w in layout.walls}
     areas: list[Clear] = []
     for door in layout.doors:
-        inward = swings.get(door.id, "") == "in"
-        depth = math.dist(door.start, door.end) if inward else PASSAGE
-        areas += _before(door.id, walls.get(door.wall), door.start, door.end, depth, FLAT)
+        wall, width = walls.get(door.wall), math.dist(door.start, door.end)
+        inward = opens_in(swings.get(door.id, "")) if not door.open else door.open > 0.0
+        sides = {1.0: width if inward else PASSAGE, -1.0: PASSAGE}
+        if wall is not None and wall.partition and door.open:
+            sides[-1.0] = PASSAGE if inward else width
+        elif wall is not None and wall.partition:
+            sides[-1.0] = sides[1.0]
+        areas += _before(door.id, wall, door.start, door.end, sides, FLAT)
+        areas += _beside(door, wall)
     for opening in layout.openings:
         if opening.sill < FLAT:
-            areas += _before(opening.id, walls.get(opening.wall), opening.start, opening.end, PASSAGE, FLAT)
+            both = {1.0: PASSAGE, -1.0: PASSAGE}
+            areas += _before(opening.id, walls.get(opening.wall), opening.start, opening.end, both, FLAT)
     return areas
+
+
+def _beside(door: DoorLine, wall: WallLine | None) -> list[Clear]:
+    """The place of a leaf that stands open by more than a right angle, and so beside its door."""
+    if wall is None or abs(door.open) <= RIGHT_ANGLE or (door.open < 0 and not wall.partition):
+        return []
+    way = (door.end[0] - door.start[0], door.end[1] - door.start[1])
+    width = math.hypot(*way)
+    ux, uy = (wall.end[0] - wall.start[0]), (wall.end[1] - wall.start[1])
+    runs = 1.0 if way[0] * ux + way[1] * uy >= 0 else -1.0
+    yaw = math.degrees(math.atan2(way[1], way[0])) + runs * door.open
+    x, y = width / 2 * math.cos(math.radians(yaw)), width / 2 * math.sin(math.radians(yaw))
+    return [Clear(door.id, Rect(door.start[0] + x, door.start[1] + y, width, LEAF, yaw % 360.0), FLAT)]
 
 
 def window_areas(layout: Layout) -> list[Clear]:
@@ -49,12 +77,19 @@ def window_areas(layout: Layout) -> list[Clear]:
     areas: list[Clear] = []
     for window in layout.windows:
         above = window.sill + SILL_GRACE
-        areas += _before(window.id, walls.get(window.wall), window.start, window.end, LIGHT, above)
+        both = {1.0: LIGHT, -1.0: LIGHT}
+        areas += _before(window.id, walls.get(window.wall), window.start, window.end, both, above)
     return areas
 
 
-def _before(name: str, wall: WallLine | None, start: Metres2, end: Metres2, depth: float, above: float) -> list[Clear]:
-    """The rectangle before a segment of a wall; one on either side of a partition."""
+def _before(
+    name: str, wall: WallLine | None, start: Metres2, end: Metres2, depths: Mapping[float, float], above: float
+) -> list[Clear]:
+    """The rectangle before a segment of a wall; one on either side of a partition.
+
+    Args:
+        depths: metres, by side: 1 is the wall's left (the room), -1 a partition's right.
+    """
     width = math.dist(start, end)
     if wall is None or width < 1e-6:
         return []
@@ -63,10 +98,10 @@ def _before(name: str, wall: WallLine | None, start: Metres2, end: Metres2, dept
         ux, uy = -ux, -uy
     yaw = math.degrees(math.atan2(uy, ux))
     middle = ((start[0] + end[0]) / 2, (start[1] + end[1]) / 2)
-    sides = (1.0, -1.0) if wall.partition else (1.0,)
     face = wall.thickness / 2 if wall.partition else 0.0
     result = []
-    for side in sides:
+    for side in (1.0, -1.0) if wall.partition else (1.0,):
+        depth = depths[side]
         off = side * (face + depth / 2)
         result.append(Clear(name, Rect(middle[0] - uy * off, middle[1] + ux * off, width, depth, yaw), above))
     return result

@@ -8,6 +8,7 @@ import math
 from ..artifacts.analysis import ArchitectureItem, Calibration, Finding, SceneAnalysis
 from ..artifacts.common import Metres2
 from ..artifacts.layout import DoorLine, OpeningLine, RoomLine, WallLine, WindowLine
+from .doors import door_stands
 
 SIDES = {"left": (-1.0, 0.0), "right": (1.0, 0.0), "top": (0.0, 1.0), "bottom": (0.0, -1.0)}
 NAMES = {"left": "wall_w", "right": "wall_e", "top": "wall_n", "bottom": "wall_s"}
@@ -110,7 +111,8 @@ def shell(
         start, end = span
         if item.kind == "door":
             top = min(item.height, height - 0.05)
-            doors.append(DoorLine(id=item.id, wall=wall.id, start=start, end=end, height=top))
+            hinge, edge, degrees = door_stands(item, wall, span, calibration)
+            doors.append(DoorLine(id=item.id, wall=wall.id, start=hinge, end=edge, height=top, open=degrees))
         elif item.kind == "window":
             sill = min(item.sill, height - 0.5)
             top = min(item.height, height - 0.05 - sill)

@@ -42,10 +42,10 @@ def matched(
     light = arriving.lights.sum(axis=0) + arriving.sky
     gives = light * space.albedo_of(np.asarray(surface).astype(np.int64)) / math.pi
     if seen is None:
-        target = scene_light(_on_screen(np.array([_GREY])), transform, look)[0]
+        target = scene_light(on_screen(np.array([_GREY])), transform, look)[0]
         return _held(math.log2(target / max(float(np.median(gives)), 1e-6))), []
     groups = _groups(np.asarray(surface).astype(np.int64))
-    wanted = scene_light(_on_screen(seen.light), transform, look)
+    wanted = scene_light(on_screen(seen.light), transform, look)
     stops, weights = [], []
     for about, mask in groups.items():
         stops.append(float(np.median(np.log2(wanted[mask] / np.maximum(gives[mask], 1e-6)))))
@@ -54,7 +54,7 @@ def matched(
     report = []
     for about, mask in groups.items():
         now = [float(np.median(shown(gives[mask] * 2.0**ev, transform, look))) for ev in (0.0, exposure)]
-        picture = float(np.median(_on_screen(seen.light[mask])))
+        picture = float(np.median(on_screen(seen.light[mask])))
         kind = "floor" if about == "floor" else "walls"
         report.append(
             Brightness(about=kind, picture=round(picture, 3), before=round(now[0], 3), after=round(now[1], 3),
@@ -74,6 +74,6 @@ def _held(stops: float) -> float:
     return round(min(MOST, max(LEAST, stops)), 3)
 
 
-def _on_screen(light: Floats) -> Floats:
+def on_screen(light: Floats) -> Floats:
     """Linear screen light as the screen's values, 0..1."""
     return shown(light, "Standard")

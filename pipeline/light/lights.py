@@ -26,8 +26,8 @@ from .space import Bools, Space, Wall, inside
 EVEN = 3.0
 """Watts a square metre on the floor."""
 _INTO_ROOM = 0.03  # metres that a window's light stands off the wall's inner face, so that no frame swallows it
-_UNDER_CEILING = 0.04  # metres
-_MARGIN = 0.25  # metres between the light under the ceiling and the walls
+_UNDER_CEILING = 0.015  # metres
+_MARGIN = 0.1  # metres between the light under the ceiling and the walls, whose upper ends it lights
 _REACH = 0.6  # metres from a lamp at which its irradiance is what its style says
 _GLASS = 0.92  # of a window's width and height that is not frame
 _SUN_HEIGHT = 6.0  # metres; where the sun is drawn
@@ -57,12 +57,12 @@ class Style:
 
 
 STYLES: dict[LightStyle, Style] = {
-    "soft daylight": Style(0.62, 0.38, 0.5, 0.45, 0.5, 12.0, 6900.0, 6300.0, 3600.0),
-    "sunny": Style(0.55, 0.35, 1.6, 0.35, 0.6, 2.5, 7000.0, 6300.0, 3600.0),
-    "overcast": Style(0.6, 0.4, 0.0, 0.4, 0.5, 20.0, 7300.0, 6800.0, 3600.0),
+    "soft daylight": Style(0.62, 0.38, 0.5, 0.45, 1.3, 12.0, 6800.0, 6500.0, 4000.0),
+    "sunny": Style(0.55, 0.35, 1.6, 0.35, 1.3, 2.5, 6800.0, 6500.0, 4000.0),
+    "overcast": Style(0.6, 0.4, 0.0, 0.4, 1.3, 20.0, 7000.0, 6600.0, 4000.0),
     "evening": Style(0.45, 0.12, 0.0, 1.1, 0.12, 10.0, 9000.0, 4600.0, 3000.0),
     "night": Style(0.25, 0.02, 0.0, 1.8, 0.02, 10.0, 11000.0, 3900.0, 2900.0),
-    "studio": Style(0.9, 0.1, 0.0, 0.4, 0.5, 20.0, 6500.0, 6500.0, 3600.0),
+    "studio": Style(0.9, 0.1, 0.0, 0.4, 1.3, 20.0, 6500.0, 6500.0, 4000.0),
 }
 
 
@@ -207,8 +207,9 @@ def rectangles(space: Space) -> list[tuple[float, float, float, float]]:
     cells = np.zeros((len(xs) - 1, len(ys) - 1), dtype=bool)
     for i in range(len(xs) - 1):
         for j in range(len(ys) - 1):
-            middle = np.array([[(xs[i] + xs[i + 1]) / 2, (ys[j] + ys[j + 1]) / 2]])
-            cells[i, j] = bool(inside(space.floor, middle)[0])
+            middle = ((xs[i] + xs[i + 1]) / 2, (ys[j] + ys[j + 1]) / 2)
+            within = any(low < middle[axis] < high for axis, low, high in _long_partitions(space))
+            cells[i, j] = not within and bool(inside(space.floor, np.array([middle]))[0])
     found: list[tuple[float, float, float, float]] = []
     while cells.any() and len(found) < 6:
         area, best = max((_largest(cells, xs, ys, i, j) for i, j in np.argwhere(cells)), key=lambda item: item[0])
@@ -223,16 +224,27 @@ def _cuts(space: Space, axis: int) -> list[float]:
     """Where the room is cut along an axis: its corners, and its long partitions."""
     low, high = float(space.floor[:, axis].min()), float(space.floor[:, axis].max())
     marks = [float(v) for v in space.floor[:, axis]]
-    span = float(np.ptp(space.floor[:, 1 - axis]))
-    for wall in space.walls:
-        is_partition = sum(other.id == wall.id for other in space.walls) == 2
-        if is_partition and abs(wall.normal[axis]) > 0.95 and wall.length > 0.6 * span:
-            marks.append(wall.start[axis])
+    marks += [face for across, *faces in _long_partitions(space) if across == axis for face in faces]
     kept: list[float] = []
     for mark in sorted({low, high, *marks}):
-        if not kept or mark - kept[-1] > 0.05:
+        if not kept or mark - kept[-1] > 0.02:
             kept.append(mark)
     return kept if len(kept) > 1 else [low, high]
+
+
+def _long_partitions(space: Space) -> list[tuple[int, float, float]]:
+    """Partitions that part the room: the axis across each, and where its two faces are on it."""
+    faces: dict[str, list[Wall]] = {}
+    for wall in space.walls:
+        faces.setdefault(wall.id, []).append(wall)
+    found = []
+    for pair in faces.values():
+        for axis in (0, 1):
+            span = float(np.ptp(space.floor[:, 1 - axis]))
+            if len(pair) == 2 and abs(pair[0].normal[axis]) > 0.95 and pair[0].length > 0.6 * span:
+                low, high = sorted(wall.start[axis] for wall in pair)
+                found.append((axis, low, high))
+    return found
 
 
 def _largest(cells: Bools, xs: list[float], ys: list[float], i: int, j: int) -> tuple[float, tuple[int, int, int, int]]:
@@ -293,7 +305,7 @@ def _sun_light(sun: Sun, how: Style, taken: set[str]) -> LightLine:
         energy=round(part * EVEN / slope, 3),
         size=round(math.radians(how.sun_angle), 4),
         target=(0.0, 0.0, 0.0),
-        kelvin=4900.0,
+        kelvin=5600.0,
     )
 
 

@@ -28,7 +28,7 @@ _FAR = 1e9
 _SLAB = 0.06  # metres: what a table's top is high
 _SKIN = 1e-4  # metres
 _SMALL = 0.02  # cubic metres
-_AT_ONCE = 8192  # rays
+_AT_ONCE = 2048  # rays
 _THIN = ("curtain", "drape", "sheer", "blind", "lamp", "light", "chandelier", "pendant", "sconce", "plant", "rug",
          "carpet", "mat")  # fmt: skip
 SKY, FLOOR, CEILING, WALLS = -1, 0, 1, 2
@@ -139,39 +139,43 @@ class Space:
 
     def _boxes_hit(self, origins: Floats, ways: Floats, distance: Floats, surface: Ints, normal: Floats) -> None:
         b = self.boxes
-        first = WALLS + len(self.walls)
         for start in range(0, len(origins), _AT_ONCE):
             part = slice(start, start + _AT_ONCE)
-            near = _near(b, origins[part], ways[part])
-            for i in np.flatnonzero(near.any(axis=0)):
-                which = start + np.flatnonzero(near[:, i])
-                self._box_hit(int(i), which, origins[which], ways[which], distance, surface, normal, first + int(i))
+            ray, box = np.nonzero(_near(b, origins[part], ways[part]))
+            ray += start
+            enter, axis, sign = _entered(b, box, origins[ray], ways[ray], distance[ray])
+            # Of the boxes that a ray meets the nearest, and of equally near ones the first.
+            met = np.flatnonzero(enter < _FAR)
+            met = met[np.lexsort((box[met], enter[met], ray[met]))]
+            met = met[np.diff(ray[met], prepend=-1) > 0]
+            index, box, axis, sign = ray[met], box[met], axis[met], sign[met]
+            distance[index] = enter[met]
+            surface[index] = WALLS + len(self.walls) + box
+            c, s = b.cosines[box], b.sines[box]
+            along = [np.where(axis == k, sign, 0.0) for k in range(3)]
+            normal[index] = np.stack([c * along[0] - s * along[1], s * along[0] + c * along[1], along[2]], axis=1)
 
-    def _box_hit(
-        self, i: int, which: Ints, origins: Floats, ways: Floats, distance: Floats, surface: Ints, normal: Floats,
-        number: int,
-    ) -> None:  # fmt: skip
-        """Let some rays, given by their index, meet one box."""
-        b = self.boxes
-        offset = origins - b.centres[i]
-        c, s = b.cosines[i], b.sines[i]
-        local = np.stack([c * offset[:, 0] + s * offset[:, 1], c * offset[:, 1] - s * offset[:, 0], offset[:, 2]])
-        way = np.stack([c * ways[:, 0] + s * ways[:, 1], c * ways[:, 1] - s * ways[:, 0], ways[:, 2]])
-        way = np.where(np.abs(way) < 1e-12, 1e-12, way)
-        half = b.halves[i][:, None]
-        one, other = (-half - local) / way, (half - local) / way
-        near, far = np.minimum(one, other), np.maximum(one, other)
-        enter, leave = near.max(axis=0), far.min(axis=0)
-        met = np.flatnonzero((enter < leave) & (enter > _SKIN) & (enter < distance[which]))
-        if not len(met):
-            return
-        axis = near[:, met].argmax(axis=0)
-        flat = np.zeros((3, len(met)))
-        flat[axis, np.arange(len(met))] = -np.sign(way[axis, met])
-        index = which[met]
-        distance[index] = enter[met]
-        surface[index] = number
-        normal[index] = np.stack([c * flat[0] - s * flat[1], s * flat[0] + c * flat[1], flat[2]], axis=1)
+
+def _entered(
+    boxes: Boxes, box: Ints, origins: Floats, ways: Floats, within: Floats
+) -> tuple[Floats, Ints, Floats]:  # fmt: skip
+    """Where rays, each given with one box, enter that box: distance (`_FAR` for none), across which axis, from which side."""
+    x, y, z = (origins - boxes.centres[box]).T
+    c, s = boxes.cosines[box], boxes.sines[box]
+    local = (c * x + s * y, c * y - s * x, z)
+    way = (c * ways[:, 0] + s * ways[:, 1], c * ways[:, 1] - s * ways[:, 0], ways[:, 2])
+    nears, sides, leave = [], [], np.full(len(box), np.inf)
+    for at, toward, half in zip(local, way, boxes.halves[box].T, strict=True):
+        toward = np.where(np.abs(toward) < 1e-12, 1e-12, toward)
+        one, other = (-half - at) / toward, (half - at) / toward
+        nears.append(np.minimum(one, other))
+        np.minimum(leave, np.maximum(one, other), out=leave)
+        sides.append(-np.sign(toward))
+    near = np.stack(nears)
+    axis = near.argmax(axis=0)
+    enter = np.maximum(np.maximum(near[0], near[1]), near[2])
+    met = (enter < leave) & (enter > _SKIN) & (enter < within)
+    return np.where(met, enter, _FAR), axis, np.choose(axis, sides)
 
 
 def _near(boxes: Boxes, origins: Floats, ways: Floats) -> Bools:

@@ -13,6 +13,9 @@ from ..geometry.polygon import Floats
 
 AGX = "AgX"
 MEDIUM_HIGH = "AgX - Medium High Contrast"
+NEUTRAL = "Khronos PBR Neutral"
+TRANSFORM, LOOK = NEUTRAL, ""
+"""What finished rooms are shown with."""
 _FIRST, _STEP, _GREY = -10.0, 0.5, 0.18
 _CURVES: dict[tuple[str, str], tuple[float, ...]] = {
     (AGX, ""): (
@@ -27,7 +30,7 @@ _CURVES: dict[tuple[str, str], tuple[float, ...]] = {
         0.0, 0.0019, 0.0043, 0.0074, 0.0112, 0.0161, 0.0224, 0.0302, 0.04, 0.0522, 0.0675, 0.0864, 0.1095, 0.1376,
         0.1713, 0.2113, 0.2577, 0.3105, 0.3694, 0.4331, 0.5002, 0.5677, 0.6344, 0.6982, 0.7571, 0.8098, 0.8556, 0.8941,
         0.9256, 0.9505, 0.9697, 0.9838, 0.9937, 1.0),
-    ("Khronos PBR Neutral", ""): (
+    (NEUTRAL, ""): (
         0.0003, 0.0003, 0.0003, 0.0003, 0.0003, 0.0003, 0.0003, 0.0003, 0.0007, 0.0013, 0.0026, 0.0051, 0.0105, 0.0206,
         0.042, 0.0736, 0.1177, 0.1745, 0.2491, 0.328, 0.4113, 0.5021, 0.6026, 0.7167, 0.8432, 0.9391, 0.9705, 0.9823),
 }  # fmt: skip

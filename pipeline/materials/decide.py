@@ -11,13 +11,14 @@ from typing import Any
 from ..artifacts.layout import Layout
 from ..artifacts.materials import Materials, ObjectMaterials, PartMaterial
 from ..artifacts.objects import Descriptions, ObjectDescription
+from ..objects.lying_on import covers_of
 from ..program import finishes
 from ..program.prelude.palette import category_family
 from ..program.prelude.recorder import SURFACES
 from ..program.prelude.shape import Shape
 from .answered import Answered
 from .choice import Choice
-from .colours import part_colours
+from .colours import part_colours, uncovered
 from .difference import difference
 from .parts import Cell, cells_of
 from .sharing import finish_of, merged, named
@@ -70,7 +71,8 @@ class Deciding:
                 weighed[key] = cells_of(made, proxy.placement == "wall")
             cells[proxy.id] = list(weighed[key])
             described = alike[proxy.id]
-            colours = part_colours(cells[proxy.id], described)
+            shown = uncovered(cells[proxy.id], made, covers_of(proxy, layout))
+            colours = part_colours(shown, described)
             family = category_family(proxy.category)
             choices[proxy.id] = [
                 usual(cell, described, proxy.category, family, colours.get(cell.material, cell.code))

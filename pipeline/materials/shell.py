@@ -10,13 +10,15 @@ import numpy as np
 
 from ..artifacts.camera import CameraModel
 from ..artifacts.layout import Layout
-from ..light.measure import LEAST_PLACES, visible_places
+from ..light.measure import LEAST_PLACES, small, visible_places
 from ..light.space import WALLS, space_of
 from ..objects.colours import Floats, from_code, to_code
 from ..objects.tinting import calm
 from ..picture import ReferencePicture
+from ..program.prelude.enclosure import TOPS
 from .choice import Choice
 from .difference import lab_of
+from .tops import top_colour
 
 _WET = re.compile(r"bath|toilet|shower|washbasin|\bsink\b|stove|\boven\b|dishwasher", re.IGNORECASE)
 _TINTED = 7.0
@@ -28,11 +30,12 @@ class ShellColours:
     """Six sRGB digits in neutral light; "" where the picture does not show it.
 
     Attributes:
-        own: those of walls with another paint than the rest, by their id.
+        own: those of walls with another paint than the rest, by their id. tops: of the walls' upper faces.
     """
 
     floor: str = ""
     walls: str = ""
+    tops: str = ""
     own: dict[str, str] = field(default_factory=dict)
 
 
@@ -54,6 +57,9 @@ def shell_colours(layout: Layout, camera: CameraModel, picture: ReferencePicture
         if len(here) >= 5 and wall.id not in seen:
             seen[wall.id] = (calm(to_code(np.minimum(_paint(here) * gains, 0.86))), len(here))
     _walls(found, seen)
+    tops = top_colour(layout, camera, small(picture))
+    if tops is not None:
+        found.tops = to_code(np.minimum(tops * gains, 0.9))
     return found
 
 
@@ -98,6 +104,8 @@ def shell_choices(layout: Layout, colours: ShellColours) -> dict[str, Choice]:
     found["walls"] = Choice("plaster", walls, word="wall_paint", why=source if colours.walls else "usual walls",
                             source="measured" if colours.walls else "usual")  # fmt: skip
     found |= {name: Choice("plaster", code, word="wall_paint", why=source) for name, code in colours.own.items()}
+    if colours.tops:
+        found[TOPS] = Choice("plaster", colours.tops, word="wall_tops", why=source)
     found["ceiling"] = Choice(
         "plaster", "F7F5F1", word="ceiling_paint", why="the picture does not show it", source="usual"
     )

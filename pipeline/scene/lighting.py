@@ -14,7 +14,7 @@ from typing import Any
 
 import bpy
 
-from ..program.prelude.enclosure import CEILING, SECTION
+from ..program.prelude.enclosure import CEILING, SECTION, TOPS
 from ..program.prelude.kelvin import light_colour
 from ..program.prelude.record import Record
 from .nodes import ensure_node_tree
@@ -36,22 +36,26 @@ def light_scene(scene: Any, room: Any, record: Record) -> None:
     _apply_view(scene, room, record.views[0] if record.views else None)
     exposure = record.views[0]["exposure"] if record.views else 0.0
     for obj in list(room.all_objects):  # hiding from the mouse rebuilds what is iterated over
-        if obj.get(KIND) in (CEILING, SECTION) and LINE in obj:
+        if obj.get(KIND) in (CEILING, SECTION, TOPS) and LINE in obj:
             _dress(obj, exposure)
 
 
 # ---- objects ----
 
 
-def dress_light(obj: Any) -> None:
-    """A light is made to shine, not to be seen: cameras see the window and the lamp that it stands for."""
+def dress_light(obj: Any, line: dict[str, Any]) -> None:
+    """A light is made to shine, not to be seen: cameras see the window and the lamp that it stands for.
+
+    What a bright ceiling gives back is seen in gloss: without it, wood and cloth would be darker than they are.
+    """
     obj.visible_camera = False
-    if obj.data.type == "AREA" and hasattr(obj, "visible_glossy"):
+    stands_for_ceiling = line.get("target") is None and not line.get("parent")
+    if obj.data.type == "AREA" and hasattr(obj, "visible_glossy") and not stands_for_ceiling:
         obj.visible_glossy = False  # mirrors and floors would show its frameless rectangle
 
 
 def _dress(obj: Any, exposure: float) -> None:
-    """The ceiling and the section are there for pictures: out of the way of the mouse, and of the solid view."""
+    """The ceiling, the section and the upper faces are there for pictures: out of the way of the mouse; no ceiling in the solid view."""
     if obj.get(KIND) == SECTION:
         for slot in obj.material_slots:
             if slot.material is not None:

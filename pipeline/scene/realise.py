@@ -194,7 +194,7 @@ def new_object(target: Target, collection: Any, mesh: Any) -> Any:
         obj[PART] = target.key[1]
     obj[NAME] = obj.name
     if target.kind == "light":
-        dress_light(obj)
+        dress_light(obj, target.line)
     collection.objects.link(obj)
     return obj
 

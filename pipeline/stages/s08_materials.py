@@ -28,6 +28,7 @@ from ..program.evaluate import evaluate
 from ..program.limits import FINISHED_ROOM_LIMITS
 from ..program.lines import parse_layout
 from ..program.looks_reference import looks_reference
+from ..program.prelude.enclosure import TOPS
 from ..program.prelude.recorder import SURFACES
 from .base import Reads, Stage, View
 from .carrying import carried_on
@@ -119,7 +120,7 @@ def _requests(view: View, deciding: Deciding, asked: Sequence[ProxyLine]) -> lis
 def _request(view: View, deciding: Deciding, number: int, group: Sequence[ProxyLine]) -> Request:
     analysis, camera = view.need(SceneAnalysis), view.need(Calibration).camera
     boxes = [(str(n), box) for n, p in enumerate(group, 1) if (box := picture_box(p, camera, analysis)) is not None]
-    surfaces = [name for name in deciding.cells if deciding.layout.proxy(name) is None] if number == 1 else []
+    surfaces = [n for n in deciding.cells if deciding.layout.proxy(n) is None and n != TOPS] if number == 1 else []
     return Request(
         key=f"08_materials/{number}",
         prompt="08_materials",

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -20,8 +20,9 @@ from ..artifacts.objects import Descriptions, RoomStyle
 from ..artifacts.textures import Texture, TextureChoices, Textures, TextureSource
 from ..errors import ProgramError, RoomError
 from ..layout.hand import apply_hand_edits
+from ..materials.shell import shell_colours
 from ..models.image_base import Proportions
-from ..objects.colours import ColourMeter, to_code
+from ..objects.colours import ColourMeter, from_code, to_code
 from ..objects.text import relaid
 from ..program.evaluate import evaluate
 from ..program.limits import FINISHED_ROOM_LIMITS
@@ -34,7 +35,7 @@ from ..textures.names import image_name
 from ..textures.painted import painted_face, painted_tile
 from ..textures.pixels import Pixels, to_png
 from ..textures.shading import typical_colour
-from ..textures.shown import Flat, NotUsable, Shown
+from ..textures.shown import LIGHTEST, Flat, NotUsable, Shown
 from ..textures.targets import FLOOR, Target, targets_of
 from .base import Reads, Stage, View
 from .carrying import carried_on
@@ -42,6 +43,8 @@ from .texture_wishes import KeepImages, Paint, Painting, PaintRequest
 from .wishes import Build, StageRun, Tell
 
 ID = "s09_textures"
+_MOST_GAIN = 3.0
+"""By which a floor's tile is made brighter or darker at most."""
 
 
 def run(view: View) -> StageRun:
@@ -133,7 +136,7 @@ class _Work:
                 continue
             try:
                 self.flats[target.surface, "picture"] = (
-                    floor_texture(self.shown)
+                    self._as_bright_as_seen(floor_texture(self.shown))
                     if target.kind == "floor"
                     else decor_texture(self.shown, target.face, target.kind, target.without, target.round)
                 )
@@ -141,6 +144,16 @@ class _Work:
                 self.reasons[target.surface, "picture"] = str(reason)
             except RoomError as error:
                 self.reasons[target.surface, "picture"] = error.message
+
+    def _as_bright_as_seen(self, flat: Flat) -> Flat:
+        """The floor's tile in the colour of the whole floor that is seen: it was taken where little stands, not where light is."""
+        gains = np.array(self.shown.gains)
+        code = shell_colours(self.layout, self.shown.camera, self.shown.reference, gains).floor
+        if not code:
+            return flat
+        own = typical_colour(flat.pixels, np.ones(flat.pixels.shape[:2], dtype=bool))
+        gain = np.clip(from_code(code) / np.maximum(own, 1e-3), 1 / _MOST_GAIN, _MOST_GAIN).astype(np.float32)
+        return replace(flat, pixels=np.clip(flat.pixels * gain, 0.0, LIGHTEST).astype(np.float32))
 
     def requests(self, targets: Sequence[Target]) -> dict[str, PaintRequest]:
         """What an image model is to paint, by surface: what wants it first, or has nothing better."""

@@ -24,11 +24,12 @@ from ..light.decide import Decision, decide
 from ..light.exposure import matched
 from ..light.glowing import switched
 from ..light.lamps import is_lamp
+from ..light.levels import levelled
 from ..light.lights import Lit, make_lights
 from ..light.measure import Places, shines, surround, visible_places
 from ..light.space import Space, space_of
 from ..light.tint import background_light, light_tint
-from ..light.tone import AGX, MEDIUM_HIGH
+from ..light.tone import LOOK, TRANSFORM
 from ..light.views import EYES, TOP, cut_height, eye_cameras, top_camera
 from ..objects.asking import picture_box
 from ..objects.text import relaid
@@ -156,14 +157,13 @@ def _finished(
     lit = make_lights(
         space, decision.style, shapes, decision.lamps, decision.windows, decision.sun, tint, decision.warmth
     )
-    lights = [*layout.lights, *lit.lights]
-    exposure, brightness = matched(space, lights, lit.world.strength, places, AGX, MEDIUM_HIGH)
+    own_lights = levelled(space, [*layout.lights, *lit.lights], lit.world.strength, places, TRANSFORM, LOOK)
+    lights = [*layout.lights, *own_lights[len(layout.lights) :]]
+    exposure, brightness = matched(space, lights, lit.world.strength, places, TRANSFORM, LOOK)
     seen = surround(view.reference) if places is not None else None
-    sky = lit.world.model_copy(
-        update={"background": background_light(seen, decision.style, exposure, AGX, MEDIUM_HIGH)}
-    )
+    sky = lit.world.model_copy(update={"background": background_light(seen, decision.style, exposure, TRANSFORM, LOOK)})
     cut = cut_height(space)
-    shown = ViewLine(id="view", exposure=exposure, transform=AGX, look=MEDIUM_HIGH, ceiling=space.height, cut=cut)
+    shown = ViewLine(id="view", exposure=exposure, transform=TRANSFORM, look=LOOK, ceiling=space.height, cut=cut)
     taken = {line.id for name in ("proxies", *LISTS) for line in getattr(layout, name)} - {TOP, *EYES}
     names = tuple(name if name not in taken else f"{name}_view" for name in EYES)
     eyes, coverage = eye_cameras(space, names)

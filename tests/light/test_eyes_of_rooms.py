@@ -8,9 +8,10 @@ import math
 import numpy as np
 from code_as_room.pipeline.artifacts.camera import CameraModel
 from code_as_room.pipeline.artifacts.common import ImagePoint
-from code_as_room.pipeline.artifacts.layout import CameraLine
+from code_as_room.pipeline.artifacts.layout import CameraLine, DoorLine, Layout, RoomLine, WallLine
 from code_as_room.pipeline.geometry.camera import project
-from code_as_room.pipeline.light.space import inside, space_of
+from code_as_room.pipeline.light.panorama import viewing_space
+from code_as_room.pipeline.light.space import FLOOR, WALLS, inside, space_of
 from code_as_room.pipeline.light.views import LEAST_FREE, cut_height, eye_cameras, top_camera
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -80,3 +81,102 @@ def test_the_top_view_shows_the_whole_room_cut_below_the_lintels() -> None:
     assert cut_height(space_of(layout)) > 2.3  # furniture is not cut open
     layout.proxies.append(thing("pillar_1", "pillar", (1, 0), (0.3, 0.3, 2.69)))
     assert cut_height(space_of(layout)) == 0.0
+
+
+def picture(layout: Layout, line: CameraLine, wide: int = 60) -> tuple[np.ndarray, list[str | None]]:
+    """Distances (H, W) and what is met (id, "floor", or None) by the lines of sight of an eye's picture."""
+    view = viewing_space(space_of(layout))
+    matrix = np.array(line.matrix).reshape(4, 4)
+    half = math.tan(line.fov_y / 2)
+    x, y = np.meshgrid((np.arange(wide) + 0.5) / wide * 2 - 1, 1 - (np.arange(wide * 2 // 3) + 0.5) / (wide // 3))
+    y = y - (1 - line.principal[1] / 500)
+    ways = np.stack([x * half * 1.5, y * half, -np.ones_like(x)], axis=-1).reshape(-1, 3) @ matrix[:3, :3].T
+    ways /= np.linalg.norm(ways, axis=1, keepdims=True)
+    distance, surface, _ = view.hit(np.broadcast_to(matrix[:3, 3], ways.shape), ways)
+    return distance.reshape(x.shape), [
+        "floor" if s == FLOOR else view.owner(int(s)) if s >= WALLS else None for s in surface
+    ]
+
+
+def looks(lines: list[CameraLine]) -> list[float]:
+    return [math.degrees(math.atan2(-line.matrix[6], -line.matrix[2])) for line in lines]
+
+
+def parts() -> Layout:
+    """Three parts side by side, with partitions between them that are passed at their ends."""
+    layout = rectangle(8.0, 4.4, windows=(3,))
+    for n, (a, b) in enumerate((((-0.8, 2.2), (-0.8, -0.6)), ((1.8, -2.2), (1.8, 0.8)))):
+        layout.walls.append(WallLine(id=f"partition_{n}", start=a, end=b, height=2.6, partition=True))
+    layout.proxies += [
+        thing("bed_1", "bed", (-2.6, 1.0), (1.8, 2.1, 0.6)),
+        thing("wardrobe_1", "wardrobe", (-3.6, -1.7), (1.0, 0.7, 2.2), yaw=90),
+        thing("desk_1", "desk", (0.5, 1.8), (1.4, 0.6, 0.75)),
+        thing("sofa_1", "sofa", (0.5, -1.7), (1.8, 0.9, 0.8), yaw=180),
+        thing("bookshelf_1", "bookshelf", (3.75, 0.0), (1.6, 0.35, 2.0), yaw=-90),
+    ]
+    return layout
+
+
+def test_eyes_in_parts_of_a_room_look_past_the_ends_of_partitions() -> None:
+    layout = parts()
+    lines, _ = eye_cameras(space_of(layout))
+    shown: set[str] = set()
+    for line in lines:
+        distance, met = picture(layout, line)
+        middle = distance[10:30, 15:45]
+        assert (middle < 1.0).mean() < 0.02 and (distance < 0.5).mean() < 0.03
+        ends = [m for m in met if m is not None and m.startswith("partition")]
+        assert len(ends) < 0.04 * len(met)
+        shown |= {i for i in set(met) if i and met.count(i) > 0.015 * len(met)}
+    assert len(shown & {p.id for p in layout.proxies}) >= 3
+    turn = abs((looks(lines)[0] - looks(lines)[1] + 180) % 360 - 180)
+    assert turn >= 60
+
+
+def test_eyes_look_along_a_corridor() -> None:
+    layout = rectangle(1.3, 7.0)
+    layout.proxies.append(thing("cabinet_1", "cabinet", (-0.47, -1.0), (0.9, 0.3, 1.0), yaw=90))
+    lines, _ = eye_cameras(space_of(layout))
+    assert all(abs(math.sin(math.radians(look))) > 0.9 for look in looks(lines))
+    assert looks(lines)[0] * looks(lines)[1] < 0  # one each way
+
+
+def test_eyes_find_their_place_in_a_tiny_bathroom() -> None:
+    layout = rectangle(1.8, 2.2, windows=(2,))
+    layout.proxies += [
+        thing("bathtub_1", "bathtub", (0, 0.72), (1.75, 0.72, 0.55)),
+        thing("toilet_1", "toilet", (0.55, -0.2), (0.4, 0.65, 0.8), yaw=-90),
+        thing("sink_1", "sink", (-0.65, -0.05), (0.5, 0.6, 0.85), yaw=90),
+    ]
+    lines, seen = eye_cameras(space_of(layout))
+    assert len(lines) == 2 and max(seen.values()) > 0.6
+    assert all("floor" in picture(layout, line)[1] or min(seen.values()) > 0.6 for line in lines)
+
+
+def test_nothing_tall_fills_an_edge_where_there_is_another_place() -> None:
+    layout = rectangle(4.6, 3.9, windows=(2,))
+    layout.proxies += [
+        thing("bed_1", "bed", (-1.2, 0.2), (2.0, 2.1, 0.6), yaw=90),
+        thing("wardrobe_1", "wardrobe", (-0.6, -1.6), (1.7, 0.6, 2.1), yaw=180),
+        thing("desk_1", "desk", (1.9, 0.0), (1.3, 0.6, 0.75), yaw=-90),
+        thing("curtain_1", "curtain", (-0.9, 1.9), (0.5, 0.1, 2.3), salience="minor"),
+    ]
+    for line in eye_cameras(space_of(layout))[0]:
+        distance, met = picture(layout, line)
+        close = (distance < 1.2).reshape(distance.shape) & np.array([m not in (None, "floor") for m in met]).reshape(
+            distance.shape
+        )
+        assert close[:, :8].mean() < 0.3 and close[:, -8:].mean() < 0.3
+
+
+def test_an_open_leaf_is_in_the_way_of_the_eyes() -> None:
+    layout = Layout(
+        room=RoomLine(size=(3, 4, 2.6), floor=[(-1.5, -2), (1.5, -2), (1.5, 2), (-1.5, 2)]),
+        walls=rectangle(3, 4).walls,
+        doors=[DoorLine(id="door_1", wall="wall_0", start=(0.2, -2.0), end=(1.1, -2.0), open=90)],
+        proxies=[thing("bed_1", "bed", (0.5, 0.9), (1.6, 2.0, 0.6))],
+    )
+    for line in eye_cameras(space_of(layout))[0]:
+        distance, met = picture(layout, line)
+        leaf = np.array([m == "door_1" for m in met]).reshape(distance.shape)
+        assert not (leaf & (distance < 1.0))[:, 15:45].any() and leaf.mean() < 0.25

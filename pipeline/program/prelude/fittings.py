@@ -38,15 +38,18 @@ def fitting_pieces(run: WallRun, hole: Hole) -> list[ShellPiece]:
         return [ShellPiece(shapes=_window(width, hole.z, faces, room_side), **common)]
     frame = _members(width, (hole.z[0], hole.z[1]), (min(faces) - _PROUD, max(faces) + _PROUD), sill=False)
     member = min(_FRAME, width / 5)
-    hinge_y = max(faces) if room_side > 0 else min(faces)
+    opened = min(max(float(hole.line.get("open", 0.0)), -180.0), 180.0)
+    # A leaf lies flush with the face that it opens towards, else it would turn within the wall.
+    leaf_side = -room_side if opened < 0.0 else room_side
+    hinge_y = max(faces) if leaf_side > 0 else min(faces)
     angle = math.radians(yaw)
     hinge = (
         origin[0] + math.cos(angle) * member - math.sin(angle) * hinge_y,
         origin[1] + math.sin(angle) * member + math.cos(angle) * hinge_y,
         0.0,
     )
-    swing = min(max(float(hole.line.get("open", 0.0)), -180.0), 180.0) * room_side
-    leaf = _leaf(width - 2 * member, hole.z[1] - member, room_side)
+    swing = opened * room_side
+    leaf = _leaf(width - 2 * member, hole.z[1] - member, leaf_side)
     return [
         ShellPiece(shapes=frame, **common),
         ShellPiece(hole.line["id"], "door", leaf, origin=hinge, yaw=yaw + swing, parent=hole.line["id"], part="leaf"),
@@ -99,7 +102,7 @@ def _window(width: float, z: tuple[float, float], faces: tuple[float, float], ro
 
 
 def _leaf(width: float, height: float, room_side: float) -> list[Shape]:
-    """A door leaf with raised panels and two handles; its origin is the hinge, closed it lies along +x behind the room's face."""
+    """A door leaf with raised panels and two handles; its origin is the hinge, closed it lies along +x behind its face."""
     near, far = sorted((0.0, -_LEAF * room_side))
     gap = min(0.005, width / 20)
     leaf = _block((0.0, near, gap), (width - gap, far, height - gap), "leaf", "door")

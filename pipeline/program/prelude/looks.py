@@ -93,10 +93,15 @@ def length(where: str, name: str, value: Any) -> float:
     return number(where, name, value, 0.0005, 10)
 
 
+BRIGHTEST = 0.92
+"""Linear; what the whitest paint gives back."""
+
+
 def toned(colour: tuple[float, float, float], factor: float, towards: float = 0.0) -> tuple[float, float, float]:
     """A linear colour made brighter or darker, and `towards` grey; no surface gives back more light than it gets."""
     grey = 0.2126 * colour[0] + 0.7152 * colour[1] + 0.0722 * colour[2]
-    red, green, blue = (min(0.92, (c + (grey - c) * towards) * factor) for c in colour)
+    factor = min(factor, BRIGHTEST / max(*colour, 1e-6))  # all of it, since one alone would change the hue
+    red, green, blue = ((c + (grey - c) * towards) * factor for c in colour)
     return red, green, blue
 
 

@@ -16,7 +16,7 @@ def glass(color: Any = "#EEF4F3", frost: Any = 0) -> Look:
     """Clear glass, thin enough that light goes straight through; `frost` 1 is milky."""
     code, colour = own_colour("glass", color)
     milky = share("glass", "frost", frost)
-    return family("glass", code, {"frost": (milky, 0)}, base=colour, transmission=1.0, roughness=0.01 + 0.5 * milky, ior=1.5,
+    return family("glass", code, {"frost": (milky, 0)}, base=colour, transmission=1.0, roughness=0.01 + 0.5 * milky, ior=1.2,
                   clear=1 - 0.75 * milky)  # fmt: skip
 
 

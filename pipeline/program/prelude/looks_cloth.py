@@ -42,7 +42,7 @@ def fabric(color: Any = "#B9B4AA", size: Any = 0.003, mottle: Any = 0.4, sheer: 
     options = {"size": (wide, 0.003), "mottle": (much, 0.4), "sheer": (thin, 0)}
     yarn = threads(wide * 1.2, 6)
     base = shades(varied(yarn, 0.1), colour, 0.1 + 0.4 * much)
-    return family("fabric", code, options, base=base, roughness=0.9, specular=0.25, sheen=0.25,
+    return family("fabric", code, options, base=base, roughness=0.9, specular=0.5, sheen=0.2,
                   bump=bump(weave(wide), -wide * 0.12, 0.6), **sheer_inputs(thin))  # fmt: skip
 
 
@@ -53,7 +53,7 @@ def linen(color: Any = "#EFEAE0", sheer: Any = 0) -> Look:
     slubs = threads(0.004, 14)
     creases = loose(noise_map(0.14, 2, distortion=0.8))
     return family("linen", code, {"sheer": (thin, 0)}, base=shades(varied(slubs, 0.06), colour, 0.12), roughness=0.92,
-                  specular=0.2, sheen=0.15, bump=bump(both(creases, slubs, 0.04), 0.012, 0.5), **sheer_inputs(thin))  # fmt: skip
+                  specular=0.45, sheen=0.15, bump=bump(both(creases, slubs, 0.04), 0.012, 0.5), **sheer_inputs(thin))  # fmt: skip
 
 
 def velvet(color: Any = "#5C6F7B") -> Look:
@@ -61,9 +61,9 @@ def velvet(color: Any = "#5C6F7B") -> Look:
     code, colour = own_colour("velvet", color)
     brushed = loose(noise_map(0.12, 2, distortion=1.2))
     base = graded(
-        varied(brushed, 0.1), (0.3, toned(colour, 0.62)), (0.5, toned(colour, 0.9)), (0.72, toned(colour, 1.3))
+        varied(brushed, 0.1), (0.3, toned(colour, 0.8)), (0.5, toned(colour, 0.97)), (0.72, toned(colour, 1.17))
     )
-    return family("velvet", code, {}, base=base, roughness=0.8, specular=0.2, sheen=0.85,
+    return family("velvet", code, {}, base=base, roughness=0.8, specular=0.4, sheen=0.7,
                   bump=bump(noise_map(0.004, 2), 0.0006, 0.5))  # fmt: skip
 
 
@@ -73,7 +73,7 @@ def knit(color: Any = "#D8CFC0", size: Any = 0.012) -> Look:
     wide = length("knit", "size", size)
     stitches = voronoi_map(wide, "distance", 0.12, (1.0, 0.62, 1), "uv")
     base = graded(stitches, (0.1, toned(colour, 1.18)), (0.75, toned(colour, 0.5)))
-    return family("knit", code, {"size": (wide, 0.012)}, base=base, roughness=0.95, specular=0.15, sheen=0.3,
+    return family("knit", code, {"size": (wide, 0.012)}, base=base, roughness=0.95, specular=0.45, sheen=0.25,
                   bump=bump(stitches, -0.35 * wide, 0.8))  # fmt: skip
 
 
@@ -88,7 +88,7 @@ def carpet(color: Any = "#CFC6B8", pile: Any = 0.006, mottle: Any = 0.4) -> Look
                 graded(tufts, (0.3, 0.0), (1.0, 0.55)))  # fmt: skip
     options = {"pile": (deep, 0.006), "mottle": (much, 0.4)}
     return family(
-        "carpet", code, options, base=base, roughness=1.0, specular=0.1, sheen=0.3, bump=bump(tufts, -deep * 0.5, 0.7)
+        "carpet", code, options, base=base, roughness=1.0, specular=0.5, sheen=0.25, bump=bump(tufts, -deep * 0.5, 0.7)
     )
 
 

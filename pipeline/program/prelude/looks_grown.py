@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import Any
 
 from .checks import choice, flag
-from .looks import Look, family, length, own_colour, share, toned
+from .looks import BRIGHTEST, Look, family, length, own_colour, share, toned
 from .maps import (
     Map,
     brick_map,
@@ -31,7 +31,8 @@ def graded(map: Map, *stops: tuple[float, Any]) -> Map:
 
 
 def shades(map: Map, colour: tuple[float, float, float], spread: float, grey: float = 0.0) -> Map:
-    """A colour that gets darker and lighter with the map by this share; on average it is the colour."""
+    """A colour that gets darker and lighter with the map by this share, less where it is bright; on average it is the colour."""
+    spread = min(spread, max(BRIGHTEST / max(*colour, 1e-6) - 1.0, 0.03))
     return graded(map, (0.2, toned(colour, 1 - spread, grey)), (0.8, toned(colour, 1 + spread)))
 
 
@@ -72,7 +73,8 @@ def timber(
     grain = both(rings, fibres, 0.38)
     if tone is not None:
         grain = both(grain, tone, 0.42)
-    spread = 0.13 + 0.46 * much
+    # Light woods have a faint grain: their light bands have nowhere to go.
+    spread = min(0.13 + 0.46 * much, 0.06 + 1.5 * max(BRIGHTEST / max(*colour, 1e-6) - 1.0, 0.0))
     base = graded(
         varied(grain, 0.1),
         (0.28, toned(colour, 1 - spread, 0.0)),

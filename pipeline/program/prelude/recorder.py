@@ -21,7 +21,7 @@ LIGHT_KINDS = ("sun", "area", "point", "spot")
 VIEW_TRANSFORMS = ("AgX", "Filmic", "Standard", "Khronos PBR Neutral")
 HOTTEST = 40_000.0
 CAMERA_KINDS = ("perspective", "orthographic")
-SURFACES = ("floor", "walls", "ceiling", "skirting", "doors", "windows")
+SURFACES = ("floor", "walls", "wall_tops", "ceiling", "skirting", "doors", "windows")
 """What `finish` may name beside ids: all surfaces of a kind."""
 MOST_LOOKS = 60
 

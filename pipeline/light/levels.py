@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How bright each part of a room is: the light under a part's ceiling, so that no part is darker than the picture shows it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..artifacts.layout import LightLine
+from ..geometry.polygon import Floats
+from .estimate import irradiance
+from .exposure import on_screen
+from .measure import LEAST_PLACES, Places
+from .space import Bools, Space
+from .tone import scene_light
+
+_LEAST, _MOST = 0.5, 2.0
+"""Times the light that all parts would have alike."""
+_ROUNDS = 2
+
+
+def levelled(
+    space: Space, lights: Sequence[LightLine], sky: float, places: Places | None, transform: str, look: str
+) -> list[LightLine]:
+    """The lights, those under the ceiling stronger or weaker where the picture's floor and walls are.
+
+    One light under the ceiling stays as it is: how bright the whole room is is the exposure's.
+    """
+    fills = [n for n, light in enumerate(lights) if is_fill(light)]
+    seen = places.only(places.is_floor | places.is_wall) if places is not None else None
+    if len(fills) < 2 or seen is None or len(seen.points) < LEAST_PLACES:
+        return list(lights)
+    arriving = irradiance(space, lights, sky, seen.points, seen.normals)
+    albedo = space.albedo_of(np.asarray(seen.surface).astype(np.int64))
+    wanted = scene_light(on_screen(seen.light), transform, look) * math.pi / np.maximum(albedo, 1e-3)
+    factors = dict.fromkeys(fills, 1.0)
+    under = {n: below(lights[n], seen.points) for n in fills}
+    for _ in range(_ROUNDS):
+        changed = arriving.lights.copy()
+        for n, factor in factors.items():
+            changed[n] *= factor
+        total = changed.sum(axis=0) + arriving.sky
+        whole = float(np.median(wanted / np.maximum(total, 1e-6)))
+        for n, mask in under.items():
+            if mask.sum() >= LEAST_PLACES:
+                needed = float(np.median(wanted[mask] / whole))
+                rest = float(np.median((total - changed[n])[mask]))
+                own = max(float(np.median(arriving.lights[n][mask])), 1e-6)
+                factors[n] = min(_MOST, max(_LEAST, (needed - rest) / own))
+    return [
+        light.model_copy(update={"energy": round(light.energy * factors[n], 2)}) if n in factors else light
+        for n, light in enumerate(lights)
+    ]
+
+
+def is_fill(light: LightLine) -> bool:
+    """Whether a light is what a bright ceiling gives back: a panel that looks straight down and is part of nothing."""
+    return light.kind == "area" and light.target is None and not light.parent
+
+
+def below(light: LightLine, points: Floats) -> Bools:
+    """Which places (N, 3) lie under a panel that looks down."""
+    wide, deep = light.size / 2 + 0.1, (light.size_y or light.size) / 2 + 0.1
+    found: Bools = (np.abs(points[:, 0] - light.at[0]) < wide) & (np.abs(points[:, 1] - light.at[1]) < deep)
+    return found
