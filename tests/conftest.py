@@ -21,6 +21,13 @@ settings.register_profile("steady", deadline=None, derandomize=True)
 settings.register_profile("explore", deadline=None, max_examples=1000)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "steady"))
 
+LONG_FILES = (
+    "test_command_bad_input.py", "test_lifetime.py", "test_modelling_stages.py", "test_correcting_scene.py",
+    "test_rectified_faces.py", "test_narrowing.py", "test_room_py_scene.py", "test_preferences_extension.py",
+    "test_finishing_moves_nothing.py", "test_recorded_prompts.py", "test_eyes_of_rooms.py",
+)  # fmt: skip
+"""Files whose tests take longest, begun first, so that no process is left alone with one at the end."""
+
 FLOOR = [(-2.3, -1.95), (2.3, -1.95), (2.3, 1.95), (-2.3, 1.95)]
 TRUE_OBJECTS = [
     ("bed", "double bed", (0.2, 0.9, 0.45), (1.7, 2.1, 0.9), 0.0, "floor", None),
@@ -31,6 +38,12 @@ TRUE_OBJECTS = [
     ("rug", "rug", (0.2, 0.2, 0.005), (2.4, 1.8, 0.01), 0.0, "floor", None),
     ("art", "painting", (0.2, 1.93, 1.6), (0.9, 0.03, 0.6), 0.0, "wall", "top"),
 ]
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """The long files first; all else in its order."""
+    place = {name: number for number, name in enumerate(LONG_FILES)}
+    items.sort(key=lambda item: place.get(item.path.name, len(place)))
 
 
 @pytest.fixture

@@ -139,8 +139,22 @@ class Room:
         """Ids of all that stands on or hangs from an object, directly or not."""
         found = [identifier]
         for at in found:
-            found += [b.id for b in self.bodies.values() if b.line.parent == at and b.id not in found]
+            found += [child for child in self._carried.get(at, ()) if child not in found]
         return found[1:]
+
+    @functools.cached_property
+    def flat(self) -> list[Body]:
+        """What lies on the floor as rugs do."""
+        return [body for body in self.bodies.values() if body.flat]
+
+    @functools.cached_property
+    def _carried(self) -> dict[str, list[str]]:
+        """What stands on or hangs from each object itself."""
+        found: dict[str, list[str]] = {}
+        for identifier, body in self.bodies.items():
+            if body.line.parent is not None:
+                found.setdefault(body.line.parent, []).append(identifier)
+        return found
 
     def above(self, identifier: str) -> list[str]:
         """Ids of what carries an object, the next one first."""

@@ -77,26 +77,35 @@ class Faces:
 def find(room: Room, knowledge: Knowledge) -> list[Fault]:
     """Pairs of objects, or an object and the floor or a wall, with faces in one plane."""
     bodies = [b for b in room.bodies.values() if not b.cloth]
-    shell = _shell(room)
-    known = {b.id: _faces_of(b, shell, knowledge) for b in bodies}
+    shell: dict[str, Faces] = knowledge.remember("shell", lambda: _shell(room))
     found = []
     boxes = [b.box for b in bodies]
     low, high = (np.array([box[k] for box in boxes]).reshape(-1, 3) for k in (0, 1))
-    for i, body in enumerate(bodies):
-        meets = ((low[i + 1 :] <= high[i] + SAME) & (high[i + 1 :] >= low[i] - SAME)).all(axis=1)
-        for j in np.flatnonzero(meets):
-            other = bodies[i + 1 + int(j)]
-            key = ("plane", body.id, body.line.centre, other.id, other.line.centre)
-            area = knowledge.remember(key, functools.partial(_shared, known[body.id], known[other.id]))
-            if area:
-                found.append(_fault(body.id, other.id, area))
-        for name, faces in shell.items():
+    meets = ((low[None] <= high[:, None] + SAME) & (high[None] >= low[:, None] - SAME)).all(axis=2)
+    for body, near in zip(bodies, np.triu(meets, 1), strict=True):
+        for other in (bodies[j] for j in np.flatnonzero(near).tolist()):
             area = knowledge.remember(
-                ("plane", body.id, body.line.centre, name), functools.partial(_shared, known[body.id], faces)
+                ("plane", body.id, body.line.centre, other.id, other.line.centre),
+                functools.partial(_between, body, other, shell, knowledge),
             )
             if area:
-                found.append(_fault(body.id, name, area))
+                found.append(_fault(body.id, other.id, area))
+        found += knowledge.remember(
+            ("in the shell", body.id, body.line.centre), functools.partial(_with_shell, body, shell, knowledge)
+        )
     return found
+
+
+def _between(one: Body, other: Body, shell: dict[str, Faces], knowledge: Knowledge) -> float:
+    """What two things share."""
+    return _shared(_faces_of(one, shell, knowledge), _faces_of(other, shell, knowledge))
+
+
+def _with_shell(body: Body, shell: dict[str, Faces], knowledge: Knowledge) -> list[Fault]:
+    """What it shares with the floor and the walls."""
+    faces = _faces_of(body, shell, knowledge)
+    areas = [(name, _shared(faces, other)) for name, other in shell.items()]
+    return [_fault(body.id, name, area) for name, area in areas if area]
 
 
 def _fault(one: str, other: str, area: float) -> Fault:

@@ -27,7 +27,7 @@ class Columns:
 
     Attributes:
         cells: flat index (column * rows + row) of each stretch; low, high: its ends.
-        tops, tops_cells: heights of nearly level faces that look up, and their cells.
+        tops, tops_cells: heights of nearly level faces that look up, and their cells, in the same order.
     """
 
     grid: Grid
@@ -136,10 +136,8 @@ def clearance(thing: Columns, carriers: Sequence[Columns]) -> float | None:
 
 def _highest(carrier: Columns, places: Floats, most: Floats) -> Floats:
     """Height of the carrier's highest face that looks up, not above `most`, under each place; NaN for none."""
-    into = carrier.at(places)
-    order = np.lexsort((carrier.tops, carrier.tops_cells))
-    cells, tops = carrier.tops_cells[order], carrier.tops[order]
-    first, last = np.searchsorted(cells, into, "left"), np.searchsorted(cells, into, "right")
+    into, tops = carrier.at(places), carrier.tops
+    first, last = np.searchsorted(carrier.tops_cells, into, "left"), np.searchsorted(carrier.tops_cells, into, "right")
     found = np.full(len(places), np.nan)
     for k in range(int((last - first).max(initial=0))):
         here = np.flatnonzero((first + k < last) & (into >= 0))

@@ -46,7 +46,7 @@ def gaps_of(room: Room, body: Body, knowledge: Knowledge) -> list[float] | None:
     if placement == "wall":
         return None if parent in room.bodies or not room.layout.walls else [gap for gap, _ in wall_gaps(room, body)[:1]]
     if placement == "floor":
-        return [body.low, *_onto(body, [b for b in room.bodies.values() if b.flat and b.id != body.id], knowledge)]
+        return [body.low, *_onto(body, [b for b in room.flat if b.id != body.id], knowledge)]
     if parent is not None and parent not in room.bodies:
         return None
     return _on_surface(room, body, knowledge)
@@ -55,11 +55,11 @@ def gaps_of(room: Room, body: Body, knowledge: Knowledge) -> list[float] | None:
 def _on_surface(room: Room, body: Body, knowledge: Knowledge) -> list[float]:
     """To its parent; where it does not touch that, to what else lies there."""
     parent = room.bodies.get(body.line.parent or "")
-    below = {body.id, *room.below(body.id)}
     first = _onto(body, [parent], knowledge) if parent is not None else []
     if first and is_held(body, first[0]):
         return first
-    others = [o for o in room.bodies.values() if o.id not in below and o is not parent]
+    below = {body.id, *room.below(body.id)}
+    others = [o for i, o in room.bodies.items() if i not in below and o is not parent]
     if parent is not None:
         family = {parent.id, *room.above(parent.id)}
         others = [o for o in others if o.line.parent in family or o.id in family]

@@ -35,11 +35,10 @@ def _near(bodies: list[Body], room: Room) -> Iterator[tuple[Body, Body]]:
     rects = np.array([b.rect[:4] for b in everything])
     spans = np.array([(b.low, b.high) for b in everything])
     reach = np.hypot(rects[:, 2], rects[:, 3]) / 2
-    for i, body in enumerate(bodies):
-        near = np.hypot(*(rects[i + 1 :, :2] - rects[i, :2]).T) < reach[i + 1 :] + reach[i]
-        near &= (spans[i + 1 :, 0] < spans[i, 1]) & (spans[i + 1 :, 1] > spans[i, 0])
-        for j in np.flatnonzero(near):
-            yield body, everything[i + 1 + int(j)]
+    near = np.hypot(*(rects[:, None, :2] - rects[None, :, :2]).T) < reach[:, None] + reach
+    near &= (spans[:, 0] < spans[:, None, 1]) & (spans[:, 1] > spans[:, None, 0])
+    for i, j in np.argwhere(np.triu(near, 1)[: len(bodies)]).tolist():
+        yield everything[i], everything[j]
 
 
 def fix(room: Room, fault: Fault, knowledge: Knowledge) -> Iterator[Mend]:

@@ -121,7 +121,7 @@ def find(category: str, label: str = "", placement: str = "") -> list[tuple[floa
 
     The head noun of the category (its last word, as in English) weighs most; `placement` breaks ties.
     """
-    wanted, hints = _words(category), _words(label)
+    wanted, hints = _words(category), frozenset(_words(label))
     scored = []
     for piece in pieces().values():
         best = max((_fit(wanted, hints, _words(word)) for word in piece.words), default=0.0)
@@ -130,8 +130,9 @@ def find(category: str, label: str = "", placement: str = "") -> list[tuple[floa
     return sorted(scored, key=lambda item: (-item[0], item[1].name))
 
 
-def _words(text: str) -> list[str]:
-    return [_singular(word) for word in re.findall(r"[a-z0-9]+", text.lower())]
+@functools.lru_cache(maxsize=4096)
+def _words(text: str) -> tuple[str, ...]:
+    return tuple(_singular(word) for word in re.findall(r"[a-z0-9]+", text.lower()))
 
 
 def _singular(word: str) -> str:
@@ -142,18 +143,18 @@ def _singular(word: str) -> str:
     return word[:-1] if len(word) > 3 and word.endswith("s") and not word.endswith(("ss", "us")) else word
 
 
-def _fit(wanted: list[str], hints: list[str], name: list[str]) -> float:
+def _fit(wanted: tuple[str, ...], hints: frozenset[str], name: tuple[str, ...]) -> float:
     """How well the name of a piece fits, 0 to 1."""
     if not wanted or not name:
         return 0.0
     if wanted == name:
         return 1.0
-    shared = len(set(wanted) & set(name))
     head = 0.5 if wanted[-1] == name[-1] else 0.0
-    said = 0.3 * shared / max(len(wanted), len(name)) + (0.05 if set(name) <= set(wanted) else 0.0)
-    hinted = 0.15 * len(set(hints) & set(name)) / len(name)
-    return (
-        head + said + hinted
-        if head or set(name) <= set(wanted)
-        else (0.35 + hinted if set(name) <= set(hints) else 0.0)
-    )
+    if not head and name[0] not in wanted and name[0] not in hints:
+        return 0.0
+    own = set(name)
+    if not head and not own <= set(wanted):
+        return 0.35 + 0.15 * len(hints & own) / len(name) if own <= hints else 0.0
+    shared = len(own.intersection(wanted))
+    said = 0.3 * shared / max(len(wanted), len(name)) + (0.05 if own <= set(wanted) else 0.0)
+    return head + said + 0.15 * len(hints & own) / len(name)

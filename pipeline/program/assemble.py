@@ -11,6 +11,7 @@ from pathlib import Path
 from ..errors import ProgramError
 from .finished import finished
 from .joiner import join_modules
+from .parse_safe import uncollected
 from .prelude import registry
 from .selection import Piece, Pieces, global_names
 from .trimming import trimmed, with_short_docs
@@ -61,7 +62,8 @@ def prelude_text() -> str:
 @functools.lru_cache(maxsize=2)
 def _pieces(docs: bool) -> Pieces:
     """The whole prelude, taken apart. With `docs`, its own functions keep what their docstrings begin with."""
-    return Pieces.of(with_short_docs(_joined(), {*_PUBLIC, "build"}, docs), docs)
+    with uncollected():
+        return Pieces.of(with_short_docs(_joined(), {*_PUBLIC, "build"}, docs), docs)
 
 
 @functools.lru_cache(maxsize=1)

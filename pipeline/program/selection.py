@@ -9,6 +9,7 @@ name. What is left keeps its order, its headings and the comments that stand rig
 from __future__ import annotations
 
 import ast
+import functools
 import re
 import symtable
 import textwrap
@@ -18,6 +19,7 @@ from dataclasses import dataclass, field
 HEADING = re.compile(r"# ---- .+ -{4,}$")
 """A comment that begins a section: "# ---- shapes ----", with many dashes for one that holds others."""
 _LONG = 60
+_DEF = re.compile(r"^(?=def )", re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -128,14 +130,26 @@ def global_names(text: str) -> set[str]:
     Raises:
         SyntaxError, ValueError, RecursionError: it is not Python, or too deeply nested.
     """
+    try:
+        return set().union(*map(_names_of_part, _DEF.split(text)))
+    except SyntaxError:  # a string or a bracket goes on past what begins like a function, or it is not Python
+        return set(_names_of_part.__wrapped__(text))
+
+
+@functools.lru_cache(maxsize=2048)
+def _names_of_part(text: str) -> frozenset[str]:
+    """As `global_names`: most functions of a room are the same from one version to the next."""
     found: set[str] = set()
     tables = [symtable.symtable(text, "room", "exec")]
     while tables:
         table = tables.pop()
-        top = table.get_type() == "module"
-        found |= {s.get_name() for s in table.get_symbols() if (s.is_referenced() if top else s.is_global())}
+        if isinstance(table, symtable.Function):
+            found.update(table.get_globals())
+        else:
+            top = table.get_type() == "module"
+            found |= {s.get_name() for s in table.get_symbols() if (s.is_referenced() if top else s.is_global())}
         tables += table.get_children()
-    return found
+    return frozenset(found)
 
 
 # ---- taking apart ----

@@ -187,8 +187,27 @@ def _broken(line: str, width: int, inside: bool = False) -> list[str]:
             return [piece for row in _rows(parts, indent, width) for piece in _broken(row, width, len(parts) > 1)]
     if not end:
         return [line]
+    start, end = _innermost(line, start, end, width)
     inner = _filled(line[start + 1 : end], indent + "    ", width)
     return [line[: start + 1], *inner, *_broken(indent + line[end:].lstrip(), width)]
+
+
+def _innermost(line: str, start: int, end: int, width: int) -> tuple[int, int]:
+    """The bracket to break a line in: where what is in it is mostly a call at its end, as in f(made, g(...)), that one's."""
+    while True:
+        body = line[start + 1 : end].rstrip(" ,")
+        last = max((at for at, letter, depth in _marks(body) if depth == 0 and letter in _OPEN), default=-1)
+        closes = [at for at, letter, depth in _marks(body) if depth == 0 and letter in _CLOSE]
+        called = last > 0 and (body[last - 1].isalnum() or body[last - 1] in "_, ([")
+        if not called or not closes or closes[-1] != len(body) - 1 or len(body) - last < 0.6 * len(body):
+            return start, end
+        if (
+            start + 1 + last >= width - 20
+            or any(letter == "," for at, letter, depth in _marks(body[:last]) if depth)
+            or (" " in body[:last].replace(", ", ","))
+        ):
+            return start, end
+        start, end = start + 1 + last, start + 1 + closes[-1]
 
 
 def _operators(text: str) -> list[int]:

@@ -16,6 +16,7 @@ from ..artifacts.layout import LayoutEdit
 from ..artifacts.scene import SceneDocument
 from ..errors import SceneError
 from ..program.assemble import room_part
+from ..program.parse_safe import uncollected
 from ..program.prelude.shape import Shape
 from .adopt import adopt
 from .assets import dress, follow, prepare, undress
@@ -51,7 +52,8 @@ class BlenderScene:
 
     def build(self, text: str) -> None:
         """As `SceneBackend.build`."""
-        self.commit(plan_build(text, meshes=False), {})
+        with uncollected():
+            self.commit(plan_build(text, meshes=False), {})
 
     def lacking(self, plan: BuildPlan) -> list[Target]:
         """What `realise.new_mesh` may make before `commit`, so that it has less to do; nothing is changed."""

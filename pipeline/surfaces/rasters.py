@@ -59,19 +59,24 @@ class Samples:
 def triangles(shapes: Sequence[Shape]) -> tuple[Floats, Ints]:
     """All faces as triangles (T, 3, 3), and the index of the shape that each belongs to (T,)."""
     corners: list[Floats] = []
-    owners: list[Ints] = []
-    for number, shape in enumerate(shapes):
+    counts: list[int] = []
+    for shape in shapes:
         flat, lengths = shape.corners
         starts = np.cumsum(lengths) - lengths
         kinds, first = np.unique(lengths, return_index=True)
+        found = 0
         for length in kinds[np.argsort(first)].tolist():
-            table = flat[starts[lengths == length][:, None] + np.arange(length)]
-            for k in range(1, length - 1):
-                corners.append(shape.vertices[table[:, (0, k, k + 1)]])
-                owners.append(np.full(len(table), number, dtype=np.int64))
+            table = flat[starts[lengths == length] + np.arange(length)[:, None]]
+            if length > 2:
+                fans = np.stack(
+                    [np.broadcast_to(table[0], (length - 2, table.shape[1])), table[1:-1], table[2:]], axis=2
+                )
+                corners.append(shape.vertices[fans.reshape(-1, 3)])
+                found += len(corners[-1])
+        counts.append(found)
     if not corners:
         return np.zeros((0, 3, 3)), np.zeros(0, dtype=np.int64)
-    return np.concatenate(corners), np.concatenate(owners)
+    return np.concatenate(corners), np.repeat(np.arange(len(counts)), counts)
 
 
 def grid_over(points: Floats, cell: float) -> Grid:
@@ -94,17 +99,19 @@ def sample(shapes: Sequence[Shape], cell: float, level: float = 0.9) -> Samples 
     if not len(corners):
         return None
     grid = grid_over(corners.reshape(-1, 3), cell)
-    cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    length = np.linalg.norm(cross, axis=1)
+    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
+    cross = np.cross(b - a, c - a)
+    length = np.sqrt(cross[:, 0] ** 2 + cross[:, 1] ** 2 + cross[:, 2] ** 2)
     # Upright triangles have no extent from above; they do not take room beyond their edges' neighbours.
-    seen = np.abs(cross[:, 2]) > 1e-12
-    corners, owner, cross, length = corners[seen], owner[seen], cross[seen], length[seen]
-    up, facing = cross[:, 2] > level * length, cross[:, 2] > 0
-    low = np.floor((corners[:, :, :2].min(axis=1) - grid.origin) / cell - 0.5).astype(np.int64)
-    high = np.ceil((corners[:, :, :2].max(axis=1) - grid.origin) / cell - 0.5).astype(np.int64)
+    seen = np.flatnonzero(np.abs(cross[:, 2]) > 1e-12)
+    corners, owner, upward, length = corners[seen], owner[seen], cross[seen, 2], length[seen]
+    up, facing = upward > level * length, upward > 0
+    a, b, c = corners[:, 0, :2], corners[:, 1, :2], corners[:, 2, :2]
+    low = np.floor((np.minimum(np.minimum(a, b), c) - grid.origin) / cell - 0.5).astype(np.int64)
+    high = np.ceil((np.maximum(np.maximum(a, b), c) - grid.origin) / cell - 0.5).astype(np.int64)
     low, high = np.maximum(low, 0), np.minimum(high, np.array(grid.shape) - 1)
     count = np.maximum(0, high - low + 1)
-    found = [_crossings(corners, low, count, grid, part) for part in _parts(count.prod(axis=1))]
+    found = [_crossings(corners, low, count, grid, part) for part in _parts(count[:, 0] * count[:, 1])]
     triangle = np.concatenate([f[0] for f in found])
     cells = np.concatenate([f[1] for f in found])
     heights = np.concatenate([f[2] for f in found])
@@ -126,18 +133,27 @@ def _parts(pairs: Ints) -> list[slice]:
 def _crossings(corners: Floats, low: Ints, count: Ints, grid: Grid, part: slice) -> tuple[Ints, Ints, Floats]:
     """Triangle index, cell and height of every crossing of some triangles with the cells' middles."""
     number = np.arange(len(corners))[part]
-    pairs = count[part].prod(axis=1)
-    triangle = np.repeat(number, pairs)
-    step = np.arange(len(triangle)) - np.repeat(np.cumsum(pairs) - pairs, pairs)
-    rows = np.maximum(1, count[triangle, 1])
-    column, row = low[triangle, 0] + step // rows, low[triangle, 1] + step % rows
-    x = grid.origin[0] + (column + 0.5) * grid.cell
-    y = grid.origin[1] + (row + 0.5) * grid.cell
-    a, b, c = (corners[triangle, k] for k in range(3))
-    area = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
-    v = ((x - a[:, 0]) * (c[:, 1] - a[:, 1]) - (y - a[:, 1]) * (c[:, 0] - a[:, 0])) / area
-    w = ((b[:, 0] - a[:, 0]) * (y - a[:, 1]) - (b[:, 1] - a[:, 1]) * (x - a[:, 0])) / area
-    inside = (v >= -1e-9) & (w >= -1e-9) & (v + w <= 1 + 1e-9)
-    heights = a[:, 2] + v * (b[:, 2] - a[:, 2]) + w * (c[:, 2] - a[:, 2])
-    cells = column * grid.shape[1] + row
-    return triangle[inside], cells[inside], heights[inside]
+    wide, deep = count[part, 0], count[part, 1]
+    wide = np.where(deep > 0, wide, 0)
+    (ax, ay, az), (bx, by, bz), (cx, cy, cz) = (corners[part, k].T for k in range(3))
+    # What all cells of a triangle's column share is worked out once a column.
+    whose = np.repeat(np.arange(len(number)), wide)
+    column, deep = low[part, 0][whose] + _counted(wide), deep[whose]
+    x = grid.origin[0] + (column + 0.5) * grid.cell - ax[whose]
+    row = np.repeat(low[part, 1][whose], deep) + _counted(deep)
+    y = grid.origin[1] + (row + 0.5) * grid.cell - np.repeat(ay[whose], deep)
+    area = np.repeat(((bx - ax) * (cy - ay) - (by - ay) * (cx - ax))[whose], deep)
+    v = (np.repeat(x * (cy - ay)[whose], deep) - y * np.repeat((cx - ax)[whose], deep)) / area
+    w = (np.repeat((bx - ax)[whose], deep) * y - np.repeat((by - ay)[whose] * x, deep)) / area
+    inside = np.flatnonzero((v >= -1e-9) & (w >= -1e-9) & (v + w <= 1 + 1e-9))
+    own = np.repeat(whose, deep)[inside]
+    heights = az[own] + v[inside] * (bz - az)[own] + w[inside] * (cz - az)[own]
+    cells = np.repeat(column * grid.shape[1], deep)[inside] + row[inside]
+    return number[own], cells, heights
+
+
+def _counted(lengths: Ints) -> Ints:
+    """0, 1, 2, ... up to each of these lengths, one after the other."""
+    ends = np.cumsum(lengths)
+    found: Ints = np.arange(int(ends[-1]) if len(ends) else 0) - np.repeat(ends - lengths, lengths)
+    return found

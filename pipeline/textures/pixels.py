@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import io
+from itertools import pairwise
 from typing import TypeAlias
 
 import numpy as np
@@ -18,6 +19,8 @@ _PLENTY = 3.0
 """Pixels of a blur's width that show all there is of it: what is blurred wider is worked out on fewer pixels."""
 _AT_ONCE = 32_768
 """Pixels that are sampled in one go, so that what is worked out stays in the processor's cache."""
+_FEW = 2
+"""Radius up to which the values in a window are added up one by one."""
 _TABLE = np.arange(256) / 255.0
 _LINEAR = np.where(_TABLE <= 0.04045, _TABLE / 12.92, ((_TABLE + 0.055) / 1.055) ** 2.4).astype(np.float32)
 _TO_CONE = np.array(((0.4122, 0.5363, 0.0514), (0.2119, 0.6807, 0.1074), (0.0883, 0.2817, 0.6300)), dtype=np.float32)
@@ -78,18 +81,31 @@ def box_filtered(values: NDArray[np.float64], radius: int, axis: int, wrap: bool
     before = (slice(None),) * axis
     sums: NDArray[np.float64]
     if wrap:
-        pad = [(0, 0)] * values.ndim
-        pad[axis] = (radius + 1, radius)
-        sums = np.pad(values, pad, mode="wrap")
+        sums = values.take(np.arange(-radius - 1, length + radius), axis=axis, mode="wrap")
     else:
         sums = np.empty((*values.shape[:axis], length + window, *values.shape[axis + 1 :]))
         sums[(*before, slice(radius + 1))] = values[(*before, slice(1))]
         sums[(*before, slice(radius + 1, radius + 1 + length))] = values
         sums[(*before, slice(radius + 1 + length, None))] = values[(*before, slice(length - 1, length))]
-    np.cumsum(sums, axis=axis, out=sums)
-    found: NDArray[np.float64] = sums[(*before, slice(window, window + length))] - sums[(*before, slice(length))]
+    found: NDArray[np.float64]
+    if radius <= _FEW:
+        found = sums[(*before, slice(1, 1 + length))] + sums[(*before, slice(2, 2 + length))]
+        for start in range(3, window + 1):
+            found += sums[(*before, slice(start, start + length))]
+    else:
+        _add_up(sums, axis)
+        found = sums[(*before, slice(window, window + length))] - sums[(*before, slice(length))]
     found /= window
     return found
+
+
+def _add_up(values: NDArray[np.float64], axis: int) -> None:
+    """Running sums along an axis, in place."""
+    if axis or values.size < _AT_ONCE:
+        np.cumsum(values, axis=axis, out=values)
+        return
+    for above, row in pairwise(values):  # row by row, as they lie in memory
+        row += above
 
 
 def blurred_inside(values: Pixels, mask: Mask, sigma: float, wrap: bool = False) -> Pixels:

@@ -21,6 +21,7 @@ _TONES = 0.35
 """Sureness from which the tones alone tell the period."""
 _FARTHEST = 2.2
 """Metres within which peaks are looked for."""
+_BEYOND = 8  # rows more than that are worked out, for what is smoothed at the end
 _SNAP = 2.0
 _MOST_POINTS = 150_000
 _MOST_DEPTH = 0.3
@@ -159,7 +160,7 @@ def periods_of(pixels: Pixels, seen: Mask, scale: float) -> tuple[Period, Period
 
 def _down_columns(high: Pixels, core: Mask, scale: float) -> Period:
     """The period down the columns of an image without its large-scale light."""
-    tones = _first_period(_autocorrelation(np.where(core, high, 0.0), core), scale)
+    tones = _first_period(_autocorrelation(np.where(core, high, 0.0), core, scale), scale)
     if tones.sure > _TONES:
         return tones
     # Planks differ in tone at random, but all joints are lines; grain is not as long as they are.
@@ -179,13 +180,16 @@ def _line_profile(found: Floats, core: Mask, scale: float) -> Floats:
     share = box_filtered(core.astype(np.float64), reach, 1, False)
     level = box_filtered(inside, reach, 1, False) / np.maximum(share, 1e-6)
     away = level - box_filtered(level, max(2, round(0.15 * scale)), 0, False)
-    return _autocorrelation(np.where(core, away, 0.0), core)
+    return _autocorrelation(np.where(core, away, 0.0), core, scale)
 
 
-def _autocorrelation(values: Floats, mask: Mask) -> Floats:
-    """Correlation down the columns of what is inside the mask with itself, 1 at no shift, 0 where too little is left."""
-    rows = len(values)
-    length = _even(2 * rows)
+def _autocorrelation(values: Floats, mask: Mask, scale: float) -> Floats:
+    """Correlation down the columns of what is inside the mask with itself, 1 at no shift, 0 where too little is left.
+
+    Only as far as periods are looked for.
+    """
+    rows = min(len(values), int(_FARTHEST * scale) + _BEYOND)
+    length = _even(len(values) + rows)
     inside = np.where(mask, values - values[mask].mean(), 0.0) if mask.any() else values
     power = np.fft.irfft((np.abs(np.fft.rfft(inside, length, axis=0)) ** 2).sum(axis=1), length)[:rows]
     count = np.fft.irfft((np.abs(np.fft.rfft(mask.astype(float), length, axis=0)) ** 2).sum(axis=1), length)[:rows]

@@ -174,3 +174,10 @@ def test_a_prelude_that_somebody_changed_is_seen() -> None:
     text = assemble("room(size=(4, 3, 2.6), floor=[])\nbox((1, 1, 1))\n")
     assert is_assembled(text) and is_assembled(text + "sphere(1)\n")
     assert not is_assembled(text.replace("def box(", "def box(a, ", 1)) and not is_assembled("\n" + text)
+
+
+def test_names_are_found_where_a_text_goes_on_past_what_begins_like_a_function() -> None:
+    text = 'said = """\ndef box(size):\n"""\n\n\ndef made(size):\n    return sphere(size)\n\n\nfurnish("a", made)\n'
+    assert global_names(text) == {"sphere", "furnish", "made"}
+    with pytest.raises(SyntaxError):
+        global_names("def made(size):\n    return box(size\n")
