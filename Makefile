@@ -5,19 +5,26 @@ PYTHON ?= $(shell for p in python3.11 python3.13 python3 python; do \
 	command -v $$p >/dev/null 2>&1 && $$p -c 'import sys; sys.exit(sys.version_info[:2] not in ((3, 11), (3, 13)))' 2>/dev/null \
 	&& { command -v $$p; break; }; done)
 VENV := .venv
+PEERS := .venv-peers
 RUN := $(VENV)/bin
 OUT ?= out/demo
 BLENDER ?= blender
 JOBS ?= 2
 
-.PHONY: demo test lint setup extension test-desktop screenshots benchmark layout-table ablations clean
+.PHONY: demo test test-peers setup-peers lint setup extension test-desktop screenshots benchmark layout-table ablations clean
 
 demo: setup
 	$(RUN)/code-as-room samples/bedroom/picture.png --replies samples/bedroom/replies --out $(OUT)
 
 # Two processes side by side; a test file stays in one of them.
 test: setup
-	$(RUN)/python -m pytest -n $(JOBS) --dist loadfile
+	$(RUN)/python -m pytest -n $(JOBS) --dist loadfile --no-loadscope-reorder
+
+# Our model clients beside the vendors' own libraries and a real llama.cpp server; an environment of its own, without Blender.
+test-peers: setup-peers
+	CODE_AS_ROOM_PEERS=1 $(PEERS)/bin/python -m pytest -o faulthandler_timeout=900 --durations=3 tests/peers
+
+setup-peers: $(PEERS)/.ready
 
 # The clone's folder may have any name, so the type checker sees the package through a link that has the right one.
 lint: setup
@@ -35,6 +42,8 @@ benchmark: setup
 	$(RUN)/python -m benchmark.colours out/benchmark
 	$(RUN)/python -m benchmark.room_size out/benchmark
 	-$(RUN)/python -m benchmark.finishing
+	-$(RUN)/python -m benchmark.client_speed
+	-$(RUN)/python -m benchmark.fuzz --replies 100000 --runs 5
 
 # Stages 1 to 4 replayed from the recordings of our own pictures, scored beside the direct answer.
 layout-table: setup
@@ -70,5 +79,11 @@ $(VENV)/.ready: pyproject.toml
 	echo "On Debian and Ubuntu: apt-get install libx11-6 libxi6 libxrender1 libxfixes3 libxkbcommon0 libsm6 libgl1 libegl1 libgl1-mesa-dri"; exit 1; }
 	@touch $@
 
+$(PEERS)/.ready: pyproject.toml requirements/peers.txt $(VENV)/.ready
+	@$(RUN)/python -m venv $(PEERS)
+	@$(PEERS)/bin/python -m pip install --quiet --disable-pip-version-check --editable '.[peers]'
+	@$(PEERS)/bin/python -m pip install --quiet --disable-pip-version-check --no-deps -r requirements/peers.txt
+	@touch $@
+
 clean:
-	rm -rf $(VENV) out build *.egg-info
+	rm -rf $(VENV) $(PEERS) out build *.egg-info

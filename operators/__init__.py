@@ -15,6 +15,7 @@ _command: Any = None
 def _classes() -> tuple[type, ...]:
     from . import (
         asset_ops,
+        by_hand,
         connection_ops,
         consent,
         detail_ops,
@@ -33,6 +34,7 @@ def _classes() -> tuple[type, ...]:
         result_ops,
         rounds,
         stage_ops,
+        talk_ops,
         texture_ops,
     )
 
@@ -57,6 +59,8 @@ def _classes() -> tuple[type, ...]:
         journal_ops,
         overlay,
         connection_ops,
+        by_hand,
+        talk_ops,
     )
     return tuple(cls for module in modules for cls in module.CLASSES)
 
@@ -96,9 +100,10 @@ def unregister() -> None:
     global _command
     import bpy
 
-    from . import connection, handlers, keymaps, object_list, overlay, render_ops, rounds
+    from . import by_hand, connection, handlers, keymaps, object_list, overlay, render_ops, rounds
 
     connection.forget()
+    by_hand.forget()
     if _command is not None:
         bpy.utils.unregister_cli_command(_command)
         _command = None

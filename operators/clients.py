@@ -7,8 +7,7 @@ Imports are light on purpose: what talks to services is imported when a client i
 from __future__ import annotations
 
 import os
-import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
@@ -18,20 +17,17 @@ import bpy
 from .. import __package__ as base_package
 from ..pipeline.errors import ModelError
 from ..pipeline.models.addresses import is_local_url
-from ..pipeline.models.base import ModelClient, Prompt, Reply, name_of
+from ..pipeline.models.base import ModelClient
 from ..pipeline.models.presets import own_key_variable, preset
 from ..pipeline.models.registry import ClientSettings, make_client, settings_from_environment
-from ..pipeline.models.routing import GROUPS
+from ..pipeline.models.routing import GROUPS, TEXT
+from .guarded import NOBODY, OFFLINE, GuardedClient, watch_online_access
 
 if TYPE_CHECKING:
-    from ..pipeline.models.image_base import ImageClient
     from ..pipeline.models.prices import Price, PriceList
     from ..pipeline.spending import Meter, RunEstimate
 
-OFFLINE = ModelError(
-    "Blender's online access is off, so the model service cannot be asked.",
-    "Allow it in Preferences, System, Network; or use the built-in analysis or a service on this computer.",
-)
+__all__ = ["NOBODY", "OFFLINE", "GuardedClient", "watch_online_access"]
 _made: tuple[ClientSettings, ModelClient] | None = None
 _meters: dict[str, Meter] = {}
 _prices: PriceList | None = None
@@ -67,7 +63,10 @@ def client_settings() -> ClientSettings:
         return ClientSettings()
     if chosen.kind == "recorded":
         return ClientSettings(kind="recorded", folder=bpy.path.abspath(preferences.replies_folder))
-    models = {group: str(getattr(preferences, f"model_{group}", "")).strip() for group in GROUPS}
+    if chosen.kind == "manual":
+        folder = str(getattr(preferences, "by_hand_folder", "")).strip()
+        return ClientSettings(kind="manual", folder=bpy.path.abspath(folder) if folder else "")
+    models = {group: str(getattr(preferences, f"model_{group}", "")).strip() for group in (*GROUPS, TEXT)}
     ca_bundle = str(getattr(preferences, "ca_bundle", "")).strip()
     return ClientSettings(
         kind=chosen.kind,
@@ -79,6 +78,7 @@ def client_settings() -> ClientSettings:
         proxy=str(getattr(preferences, "proxy", "")).strip(),
         ca_bundle=bpy.path.abspath(ca_bundle) if ca_bundle else "",
         spending_cap=float(getattr(preferences, "spending_cap", 0.0)),
+        at_once=int(getattr(preferences, "at_once", 0)) or chosen.at_once,
     )
 
 
@@ -120,6 +120,11 @@ def key_of(variable: str, typed: str, what: str) -> str:
     return value
 
 
+def has_window() -> bool:
+    """Whether there is somebody who can copy and paste."""
+    return not bpy.app.background
+
+
 def current_client() -> ModelClient:
     """The client that the preferences describe, fit to be asked from worker threads.
 
@@ -128,6 +133,10 @@ def current_client() -> ModelClient:
     """
     global _made
     settings = client_settings()
+    if settings.kind == "manual" and has_window():
+        from . import desk
+
+        return desk.make_client(settings.folder)
     if _made is None or _made[0] != settings or not settings.is_service:
         # A service's client is kept: it has learnt what the service accepts.
         _made = (settings, make_client(settings))
@@ -191,7 +200,7 @@ def take_over_cap() -> None:
 
 
 def run_estimate(stages: Sequence[str], rounds: int) -> RunEstimate | None:
-    """What a run of these stages may cost, for the artist before it begins; None where no service is asked.
+    """What a run of these stages may cost, for the artist before it begins; None where nothing is asked.
 
     Args:
         stages: ids of the stages; rounds: most rounds of the layout loop.
@@ -200,10 +209,13 @@ def run_estimate(stages: Sequence[str], rounds: int) -> RunEstimate | None:
         RoomError: the settings or the artist's list of prices cannot be read.
     """
     settings = client_settings()
-    if not settings.is_service:
-        return None
+    from ..pipeline.models.prices import FREE
     from ..pipeline.spending import estimate_run, price_lookup
 
+    if settings.kind == "manual":
+        return estimate_run(stages, rounds, lambda stage: ("", FREE))
+    if not settings.is_service:
+        return None
     return estimate_run(stages, rounds, price_lookup(prices(), settings))
 
 
@@ -251,53 +263,3 @@ def forget_prices() -> None:
     """Read the list anew when it is needed next."""
     global _prices
     _prices = None
-
-
-class GuardedClient:
-    """A client on the network. Before every question it looks whether Blender's online access is still on.
-
-    Worker threads must not read `bpy.app`, so the main thread looks for them: `watch` is called on every tick.
-    """
-
-    def __init__(self, client: ModelClient) -> None:
-        self.inner = client
-        self.name, self.describes = client.name, client.describes
-        self.online = False
-
-    def name_for(self, stage: str) -> str:
-        """The name of who answers a stage."""
-        return name_of(self.inner, stage)
-
-    def watch(self) -> None:
-        """Look whether online access is on. Main thread only."""
-        self.online = bool(bpy.app.online_access)
-
-    def answer(self, prompt: Prompt, cancel: threading.Event, progress: Callable[[str], None] | None = None) -> Reply:
-        """As `ModelClient.answer`; ModelError when online access was switched off."""
-        if not self.online:
-            raise ModelError(OFFLINE.message, OFFLINE.fix)
-        return self.inner.answer(prompt, cancel, progress)
-
-
-def watch_online_access(client: ModelClient | ImageClient | None) -> None:
-    """Tell a client on the network whether online access is still on. Main thread only."""
-    found: Any = client
-    while found is not None:
-        watch = getattr(found, "watch", None)
-        if watch is not None:
-            watch()
-        found = getattr(found, "inner", None)
-
-
-class _Nobody:
-    """Answers nothing: for reading the state of a room, where no question is ever asked."""
-
-    name = ""
-    describes = ""
-
-    def answer(self, prompt: Prompt, cancel: threading.Event, progress: Callable[[str], None] | None = None) -> Reply:
-        """Always ModelError."""
-        raise ModelError("There is no model to ask.")
-
-
-NOBODY: ModelClient = _Nobody()

@@ -20,14 +20,13 @@ import bpy
 from ..pipeline.errors import Cancelled, ModelError, RoomError
 from ..pipeline.models.addresses import is_local_url
 from ..pipeline.models.presets import preset
-from ..pipeline.models.registry import ClientSettings
-from . import clients
+from ..pipeline.models.registry import SERVICES, ClientSettings
+from . import clients, model_prices
 from .base import manager
 
 if TYPE_CHECKING:
     from ..pipeline.models.connection import ConnectionReport
     from ..pipeline.models.listing import ModelInfo
-    from ..pipeline.models.prices import Price
 
 log = logging.getLogger(__name__)
 _INTERVAL = 0.1
@@ -60,8 +59,6 @@ _activity: Activity | None = None
 _report: ConnectionReport | None = None
 _problem: RoomError | None = None
 _models: dict[tuple[str, str], tuple[ModelInfo, ...]] = {}
-_price_lines: tuple[str, ...] = ()
-_price_missing: tuple[str, ...] = ()
 _status_until = 0.0
 
 
@@ -83,14 +80,14 @@ def problem() -> RoomError | None:
     return _problem
 
 
+def models_at(settings: ClientSettings) -> tuple[ModelInfo, ...]:
+    """The models that a service listed in this session."""
+    return _models.get((settings.kind, settings.base_url.strip()), ())
+
+
 def models_of(preferences: Any) -> tuple[ModelInfo, ...]:
     """The models that the service listed in this session; none when it was not asked yet."""
     return _models.get(_place(preferences), ())
-
-
-def price_lines() -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Sentences on what the models cost, and the models whose price is not known."""
-    return _price_lines, _price_missing
 
 
 def _place(preferences: Any) -> tuple[str, str]:
@@ -106,42 +103,7 @@ def settings_changed() -> None:
     _report = _problem = None
     if _activity is not None:
         _activity.cancel.set()
-    look_up_prices()
-
-
-def look_up_prices() -> None:
-    """Work out what the preferences say of prices."""
-    global _price_lines, _price_missing
-    try:
-        settings = clients.client_settings()
-        if not settings.is_service:
-            _price_lines, _price_missing = (), ()
-            return
-        _take_listed_prices(settings)
-        found = clients.model_prices(settings)
-    except RoomError as error:
-        _price_lines, _price_missing = (str(error),), ()
-        return
-    _price_lines = tuple(_price_sentence(model, price) for model, price in found)
-    _price_missing = tuple(model for model, price in found if price is None)
-
-
-def _take_listed_prices(settings: ClientSettings) -> None:
-    """A chosen model whose price the service told: keep it."""
-    listed = {info.id: info.price for info in _models.get((settings.kind, settings.base_url.strip()), ())}
-    for model, known in clients.model_prices(settings):
-        told = listed.get(model)
-        if told is not None and (known is None or (known.input, known.output) != (told.input, told.output)):
-            clients.keep_price(settings.base_url, model, told)
-
-
-def _price_sentence(model: str, price: Price | None) -> str:
-    if price is None:
-        return f"The price of {model} is not known, so what it costs cannot be told."
-    if price.is_free:
-        return f"{model} costs nothing."
-    since = f" (as of {price.date}; what the service bills is what holds)" if price.date else ""
-    return f"{model} costs ${price.input:g} for a million tokens sent, ${price.output:g} answered{since}."
+    model_prices.look_up()
 
 
 # Running ----------------------------------------------------------------------------------------------------------
@@ -151,7 +113,7 @@ def blocker(preferences: Any) -> str:
     """Why nothing can be asked now, "" when it can. No I/O."""
     if preferences is None:
         return "The add-on's preferences are not there"
-    if preset(preferences.provider).kind in ("builtin", "recorded"):
+    if preset(preferences.provider).kind not in SERVICES:
         return "This provider needs no connection"
     if _activity is not None:
         return "The service is being asked; wait for it, or stop it"
@@ -200,7 +162,7 @@ def start_listing() -> Activity:
             _problem = found
             return
         _models[(settings.kind, settings.base_url.strip())] = found
-        look_up_prices()
+        model_prices.look_up()
 
     return _start(Activity("Fetching the models", work, done))
 

@@ -9,8 +9,8 @@ from typing import Any
 import bpy
 
 from ..pipeline.errors import RoomError
-from ..pipeline.models.routing import GROUPS
-from . import clients, connection
+from ..pipeline.models.routing import GROUPS, TEXT
+from . import clients, connection, model_prices
 from .base import allow, manager
 
 
@@ -153,7 +153,7 @@ class CODE_AS_ROOM_OT_choose_model(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[Any]:
         """Take the model."""
         preferences = clients.add_on_preferences()
-        if preferences is None or self.target not in ("model", *(f"model_{g}" for g in GROUPS)):
+        if preferences is None or self.target not in ("model", *(f"model_{g}" for g in (*GROUPS, TEXT))):
             return {"CANCELLED"}
         setattr(preferences, self.target, self.model)
         connection.redraw()
@@ -224,7 +224,7 @@ class CODE_AS_ROOM_OT_set_price(bpy.types.Operator):
         except RoomError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
-        connection.look_up_prices()
+        model_prices.look_up()
         connection.redraw()
         return {"FINISHED"}
 

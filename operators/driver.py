@@ -20,6 +20,7 @@ from ..pipeline.run import Run, StageReport
 from ..pipeline.run_corrections import bring_up_to_date
 from ..pipeline.stages.base import Stage
 from . import asset_shelf, clients, journals, late, own_room, painters, properties, reference, room_memory, view_state
+from .desk import DESK
 from .job import Job
 from .meanwhile import NotApplied, in_hand
 from .progress import Durations, Progress
@@ -276,7 +277,7 @@ def _redraw_on_change(progress: Progress) -> None:
     global _shown
     seconds = int(time.monotonic() - progress.began)
     calls = progress.calls_open, progress.calls_done
-    news = (progress.stage, progress.what, progress.step, progress.stopping, calls, seconds)
+    news = (progress.stage, progress.what, progress.step, progress.stopping, calls, seconds, DESK.waiting)
     if news != _shown:
         _shown = news
         redraw()

@@ -98,6 +98,8 @@ def _spending(run: Run) -> str:
     words += (
         f" of at most ${meter.cap:.2f}" if meter.cap and words else f"At most ${meter.cap:.2f}" if meter.cap else ""
     )
+    share = 100 * meter.cached // max(1, meter.tokens[0])
+    words += f"; {share} % of what was sent came from the service's cache" if words and share else ""
     unpriced = f"; the price of {', '.join(meter.unpriced)} is not known" if meter.unpriced else ""
     return words + unpriced if words else unpriced.removeprefix("; ").capitalize()
 

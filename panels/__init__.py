@@ -6,10 +6,10 @@ from __future__ import annotations
 
 def panel_classes() -> tuple[type, ...]:
     """The panels of the tab "Room"; parents before their sub-panels."""
-    from . import calibration, finish, objects, output, reference, rounds, stages, textures, views
+    from . import by_hand, calibration, finish, objects, output, reference, rounds, stages, textures, views
 
     modules = (reference, calibration, objects, stages, rounds, textures, finish, views, output)
-    return (stages.CODE_AS_ROOM_PT_running, *(cls for module in modules for cls in module.CLASSES))
+    return (stages.CODE_AS_ROOM_PT_running, *by_hand.CLASSES, *(cls for module in modules for cls in module.CLASSES))
 
 
 def _classes() -> tuple[type, ...]:

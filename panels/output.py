@@ -40,6 +40,7 @@ class CODE_AS_ROOM_PT_output(RoomPanel):
         row.enabled = state.has_memory
         row.operator("code_as_room.open_text", text="Program", icon="TEXT").which = "PROGRAM"
         row.operator("code_as_room.open_text", text="Memory", icon="TEXT").which = "MEMORY"
+        row.operator("code_as_room.show_prompts", text="Prompts", icon="TEXT")
 
 
 CLASSES = (CODE_AS_ROOM_PT_output,)

@@ -15,12 +15,11 @@ import bpy
 from .. import __package__ as base_package
 from ..operators import clients, connection, view_state
 from ..pipeline.models.presets import PRESETS, preset
-from ..pipeline.models.routing import GROUPS
 from . import preferences_images
-from .preferences_draw import KEY_WARNING, draw_preferences
+from .preferences_draw import FIELDS, draw_preferences
+from .preferences_service import KEY_WARNING, switch
 
 __all__ = ["KEY_WARNING", "CodeAsRoomPreferences", "classes"]
-_OF_SERVICE = ("base_url", "model", *(f"model_{group}" for group in GROUPS), "api_key", "key_variable")
 _switching = False
 _MOST_SUGGESTIONS = 400
 
@@ -40,29 +39,11 @@ def _provider_changed(preferences: Any, context: Any) -> None:
     if before != now and not _switching:
         _switching = True
         try:
-            _put_aside(preferences, before)
-            _bring_back(preferences, now)
+            switch(preferences, FIELDS, before, now, preset(now).base_url)
             preferences.last_provider = now
         finally:
             _switching = False
     _changed(preferences, context)
-
-
-def _put_aside(preferences: Any, provider: str) -> None:
-    kept = preferences.services.get(provider)
-    if kept is None:
-        kept = preferences.services.add()
-        kept.name = provider
-    for name in _OF_SERVICE:
-        setattr(kept, name, getattr(preferences, name))
-
-
-def _bring_back(preferences: Any, provider: str) -> None:
-    kept = preferences.services.get(provider)
-    for name in _OF_SERVICE:
-        setattr(preferences, name, getattr(kept, name) if kept is not None else "")
-    if not preferences.base_url.strip():
-        preferences.base_url = preset(provider).base_url
 
 
 def _cap_changed(preferences: Any, context: Any) -> None:
@@ -99,6 +80,9 @@ class CodeAsRoomService(bpy.types.PropertyGroup):
     model_modelling: bpy.props.StringProperty(name="Modelling", description="The model for stages 5 to 7")  # type: ignore[valid-type]
     model_surfaces: bpy.props.StringProperty(  # type: ignore[valid-type]
         name="Surfaces and Light", description="The model for stages 8 to 10"
+    )
+    model_text: bpy.props.StringProperty(  # type: ignore[valid-type]
+        name="Without Pictures", description="The model for questions without pictures"
     )
     api_key: bpy.props.StringProperty(name="API Key", description="The service's key", subtype="PASSWORD")  # type: ignore[valid-type]
     key_variable: bpy.props.StringProperty(  # type: ignore[valid-type]
@@ -148,6 +132,10 @@ class CodeAsRoomPreferences(preferences_images.ImagePreferences, bpy.types.Addon
     model_surfaces: _model(  # type: ignore[valid-type]
         "Surfaces and Light", "Another model for stages 8 to 10. Empty: the main model"
     )
+    model_text: _model(  # type: ignore[valid-type]
+        "Without Pictures",
+        "Another model for questions without pictures, which needs no eyes. Empty: the stage's model",
+    )
     api_key: bpy.props.StringProperty(  # type: ignore[valid-type]
         name="API Key",
         description="The service's key; may stay empty for a service on this computer",
@@ -178,6 +166,15 @@ class CodeAsRoomPreferences(preferences_images.ImagePreferences, bpy.types.Addon
         subtype="TIME_ABSOLUTE",
         update=_changed,
     )
+    at_once: bpy.props.IntProperty(  # type: ignore[valid-type]
+        name="Questions at Once",
+        description="Most questions that are sent side by side. 0: four, and one to a service on this computer or its "
+        "own network. A service that says it is asked too often gets fewer by itself",
+        default=0,
+        min=0,
+        max=4,
+        update=_changed,
+    )
     proxy: bpy.props.StringProperty(  # type: ignore[valid-type]
         name="Proxy",
         description="HTTP proxy on the way to the internet, such as http://proxy:8080. Empty: what the system's "
@@ -197,11 +194,17 @@ class CodeAsRoomPreferences(preferences_images.ImagePreferences, bpy.types.Addon
         subtype="DIR_PATH",
         update=_changed,
     )
+    by_hand_folder: bpy.props.StringProperty(  # type: ignore[valid-type]
+        name="Pictures Folder",
+        description="Where a prompt's pictures are saved while it waits for the chat's answer. Empty: the add-on's own",
+        subtype="DIR_PATH",
+        update=_changed,
+    )
     show_models: bpy.props.BoolProperty(  # type: ignore[valid-type]
         name="Models by Stage", description="Choose another model for some of the stages", options={"SKIP_SAVE"}
     )
     show_network: bpy.props.BoolProperty(  # type: ignore[valid-type]
-        name="Network", description="Time-out, proxy and certificates", options={"SKIP_SAVE"}
+        name="Network", description="Time-out, questions at once, proxy and certificates", options={"SKIP_SAVE"}
     )
 
     def draw(self, context: bpy.types.Context) -> None:

@@ -5,19 +5,21 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..operators import clients, connection, view_state
-from ..pipeline.models.addresses import is_local_url
-from ..pipeline.models.presets import Preset, preset
-from ..pipeline.models.routing import GROUPS
+from ..operators import clients, connection, model_prices, view_state
+from ..pipeline.models.presets import preset
+from ..pipeline.models.registry import SERVICES
+from ..pipeline.models.routing import GROUPS, TEXT
 from .preferences_images import draw_image_preferences
+from .preferences_service import Fields, draw_address, draw_cap, draw_fold, draw_privacy, draw_provider
 from .sentences import draw_sentence
 
-KEY_WARNING = (
-    "The key is kept unencrypted in Blender's own preferences file (userpref.blend). "
-    "It never goes into a scene, a .blend, memory, a log or a report. "
-    "Safer: leave it empty, and name an environment variable that holds it."
-)
+_MODELS = ("model", *(f"model_{group}" for group in (*GROUPS, TEXT)))
+FIELDS = Fields("", "services", dict.fromkeys(("base_url", *_MODELS, "api_key", "key_variable"), ""))
 SENT = "Each question sends the picture, crops of it and pictures of the layout to this service."
+BY_HAND = (
+    "Run the stages as usual. The sidebar then shows each prompt: copy it, attach its pictures, paste the chat's answer. "
+    "What you send, you send yourself; what the chat keeps of it, its own terms say."
+)
 _ICONS = {"good": "CHECKMARK", "bad": "ERROR", "unsure": "INFO", "not tried": "BLANK1"}
 
 
@@ -26,48 +28,27 @@ def draw_preferences(preferences: Any, layout: Any, context: Any) -> None:
     layout.use_property_split = True
     layout.use_property_decorate = False
     _draw_answers(preferences, layout, context)
-    draw_image_preferences(preferences, layout, context, KEY_WARNING)
+    draw_image_preferences(preferences, layout, context)
 
 
 def _draw_answers(preferences: Any, layout: Any, context: Any) -> None:
     """Who answers, and what that needs."""
     chosen = preset(preferences.provider)
-    layout.prop(preferences, "provider")
-    draw_sentence(layout, chosen.note, context, icon="INFO")
+    draw_provider(preferences, FIELDS, chosen, layout, context)
     if chosen.kind == "recorded":
         layout.prop(preferences, "replies_folder")
-    if chosen.kind in ("builtin", "recorded"):
+    if chosen.kind == "manual":
+        layout.prop(preferences, "by_hand_folder", placeholder="The add-on's own")
+        draw_sentence(layout, BY_HAND, context, icon="INFO")
+    if chosen.kind not in SERVICES:
         _draw_problem(layout, context)
         return
-    _draw_service(preferences, chosen, layout, context)
+    draw_address(preferences, FIELDS, chosen, clients.key_source(preferences), layout, context)
     _draw_models(preferences, layout, context)
     _draw_test(preferences, layout, context)
     _draw_spending(preferences, layout, context)
     _draw_network(preferences, layout, context)
-    if not is_local_url(preferences.base_url):
-        draw_sentence(layout, SENT, context, icon="INFO")
-    if preferences.api_key and not preferences.key_variable.strip():
-        draw_sentence(layout, KEY_WARNING, context, icon="UNLOCKED")
-
-
-def _draw_service(preferences: Any, chosen: Preset, layout: Any, context: Any) -> None:
-    """Address and key."""
-    column = layout.column(align=False)
-    column.prop(preferences, "base_url")
-    if chosen.key == "none":
-        return
-    row = column.row(align=True)
-    row.active = not preferences.key_variable.strip()
-    row.prop(preferences, "api_key", placeholder="" if chosen.key == "needed" else "Only where the service wants one")
-    if chosen.key_page:
-        row.operator("wm.url_open", text="", icon="URL").url = chosen.key_page
-    column.prop(preferences, "key_variable", placeholder="Instead of the key")
-    source = clients.key_source(preferences)
-    if source:
-        draw_sentence(column, f"The key is taken from the environment variable {source}.", context, icon="LOCKED")
-    elif chosen.key == "needed" and not preferences.api_key:
-        page = chosen.key_page.removeprefix("https://")
-        draw_sentence(column, f"There is no key yet. Get one at {page}.", context, icon="KEY_HLT")
+    draw_privacy(preferences, FIELDS, SENT, layout, context)
 
 
 def _draw_models(preferences: Any, layout: Any, context: Any) -> None:
@@ -80,12 +61,14 @@ def _draw_models(preferences: Any, layout: Any, context: Any) -> None:
         draw_sentence(column, str(problem), context, icon="ERROR", alert=True)
     elif listed and not preferences.model.strip():
         draw_sentence(column, f"{len(listed)} models found: click the lens to search them.", context, icon="INFO")
-    if _fold(preferences, column, "show_models"):
+    if draw_fold(preferences, column, "show_models"):
         for group, (_, numbers) in GROUPS.items():
             first, last = numbers[0], numbers[-1]
             stages = f"stage {first}" if first == last else f"stages {first} to {last}"
             hint = f"{preferences.model.strip() or 'The main model'} ({stages})"
             _draw_model(preferences, column, f"model_{group}", bool(listed), hint)
+        hint = f"{preferences.model.strip() or 'The main model'} (any stage)"
+        _draw_model(preferences, column, f"model_{TEXT}", bool(listed), hint)
 
 
 def _draw_model(preferences: Any, column: Any, name: str, listed: bool, hint: str) -> None:
@@ -136,8 +119,8 @@ def _draw_problem(layout: Any, context: Any) -> None:
 def _draw_spending(preferences: Any, layout: Any, context: Any) -> None:
     """The cap, and what the models cost."""
     column = layout.column()
-    column.prop(preferences, "spending_cap", text="Spending Cap per Room ($)")
-    lines, missing = connection.price_lines()
+    draw_cap(preferences, column)
+    lines, missing = model_prices.lines()
     for line in lines:
         draw_sentence(column, line, context, icon="BLANK1")
     for model in missing:
@@ -149,20 +132,11 @@ def _draw_spending(preferences: Any, layout: Any, context: Any) -> None:
 
 
 def _draw_network(preferences: Any, layout: Any, context: Any) -> None:
-    """Time-out, proxy, certificates."""
-    if not _fold(preferences, layout, "show_network"):
+    """Time-out, questions side by side, proxy, certificates."""
+    if not draw_fold(preferences, layout, "show_network"):
         return
     column = layout.column()
     column.prop(preferences, "timeout")
+    column.prop(preferences, "at_once", text="Questions at Once (0: automatic)")
     column.prop(preferences, "proxy", placeholder="As the environment says")
     column.prop(preferences, "ca_bundle", placeholder="The usual certificates")
-
-
-def _fold(preferences: Any, layout: Any, name: str) -> bool:
-    """A line that opens and closes what follows; whether it is open."""
-    is_open = bool(getattr(preferences, name))
-    row = layout.row()
-    row.use_property_split = False
-    row.alignment = "LEFT"
-    row.prop(preferences, name, icon="DOWNARROW_HLT" if is_open else "RIGHTARROW", emboss=False)
-    return is_open

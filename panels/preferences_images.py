@@ -14,9 +14,13 @@ from ..operators import painters, view_state
 from ..pipeline.models.addresses import is_local_url
 from ..pipeline.models.image_registry import IMAGE_PRESETS, image_preset
 from ..pipeline.models.presets import preset
+from ..pipeline.models.registry import SERVICES
+from .preferences_service import Fields, draw_address, draw_cap, draw_privacy, draw_provider, switch
 from .sentences import draw_sentence
 
-_OF_SERVICE = ("base_url", "model", "api_key", "key_variable", "price")
+FIELDS = Fields(
+    "image_", "image_services", {"base_url": "", "model": "", "api_key": "", "key_variable": "", "price": 0.0}
+)
 _SENT = "For each surface a few words and colours are sent to this service; never the picture itself."
 _switching = False
 
@@ -34,26 +38,11 @@ def _provider_changed(preferences: Any, context: Any) -> None:
     if before != now and not _switching:
         _switching = True
         try:
-            _switch(preferences, before, now)
+            switch(preferences, FIELDS, before, now, image_preset(now).base_url)
             preferences.image_last_provider = now
         finally:
             _switching = False
     _changed(preferences, context)
-
-
-def _switch(preferences: Any, before: str, now: str) -> None:
-    kept = preferences.image_services.get(before)
-    if kept is None:
-        kept = preferences.image_services.add()
-        kept.name = before
-    for name in _OF_SERVICE:
-        setattr(kept, name, getattr(preferences, f"image_{name}"))
-    found = preferences.image_services.get(now)
-    for name in _OF_SERVICE:
-        empty: Any = 0.0 if name == "price" else ""
-        setattr(preferences, f"image_{name}", getattr(found, name) if found is not None else empty)
-    if not preferences.image_base_url.strip():
-        preferences.image_base_url = image_preset(now).base_url
 
 
 class CodeAsRoomImageService(bpy.types.PropertyGroup):
@@ -119,41 +108,29 @@ class ImagePreferences:
     )
 
 
-def draw_image_preferences(preferences: Any, layout: Any, context: Any, key_warning: str) -> None:
+def draw_image_preferences(preferences: Any, layout: Any, context: Any) -> None:
     """Which image model paints, and what that needs."""
     layout.separator()
-    column = layout.column()
-    column.prop(preferences, "image_provider")
     chosen = image_preset(preferences.image_provider)
-    draw_sentence(column, chosen.note, context, icon="INFO")
+    draw_provider(preferences, FIELDS, chosen, layout, context)
     if chosen.kind == "builtin":
         return
-    column.prop(preferences, "image_base_url")
-    row = column.row(align=True)
-    row.active = not preferences.image_key_variable.strip()
-    needed = chosen.key == "needed"
-    row.prop(preferences, "image_api_key", placeholder="" if needed else "Only where the service wants one")
-    if chosen.key_page:
-        row.operator("wm.url_open", text="", icon="URL").url = chosen.key_page
-    column.prop(preferences, "image_key_variable", placeholder="Instead of the key")
-    source = painters.image_key_source(preferences)
-    if source:
-        draw_sentence(column, f"The key is taken from the environment variable {source}.", context, icon="LOCKED")
-    elif needed and not preferences.image_api_key:
-        page = chosen.key_page.removeprefix("https://")
-        draw_sentence(column, f"There is no key yet. Get one at {page}.", context, icon="KEY_HLT")
-    column.prop(preferences, "image_model", placeholder="The image model's name")
-    local = is_local_url(preferences.image_base_url)
-    if not local:
-        column.prop(preferences, "image_price", text="Price of an Image ($)")
-        if preset(preferences.provider).kind in ("builtin", "recorded"):  # else it is shown above
-            column.prop(preferences, "spending_cap", text="Spending Cap per Room ($)")
-        if not preferences.image_price and preferences.spending_cap > 0.0:
-            text = "While the price is not known, the spending cap cannot be kept, so nothing is painted."
-            draw_sentence(column, text, context, icon="ERROR", alert=True)
-        draw_sentence(column, _SENT, context, icon="INFO")
-    if preferences.image_api_key and not preferences.image_key_variable.strip():
-        draw_sentence(column, key_warning, context, icon="UNLOCKED")
+    draw_address(preferences, FIELDS, chosen, painters.image_key_source(preferences), layout, context)
+    layout.column().prop(preferences, "image_model", placeholder="The image model's name")
+    if not is_local_url(preferences.image_base_url):
+        _draw_price(preferences, layout, context)
+    draw_privacy(preferences, FIELDS, _SENT, layout, context)
+
+
+def _draw_price(preferences: Any, layout: Any, context: Any) -> None:
+    """What an image costs, and the cap where it is not shown with the questions' service."""
+    column = layout.column()
+    column.prop(preferences, "image_price", text="Price of an Image ($)")
+    if preset(preferences.provider).kind not in SERVICES:
+        draw_cap(preferences, column)
+    if not preferences.image_price and preferences.spending_cap > 0.0:
+        text = "While the price is not known, the spending cap cannot be kept, so nothing is painted."
+        draw_sentence(column, text, context, icon="ERROR", alert=True)
 
 
 CLASSES = (CodeAsRoomImageService,)

@@ -13,14 +13,19 @@ from typing import Literal
 
 from pydantic import BaseModel
 
+from .ask_shared import mark_shared
+from .ask_talk import TALK
 from .errors import Cancelled, ModelError, NotRecordedError, ReplyError, RoomError
 from .journal import KeptReply
 from .models.base import ModelClient, Prompt, Reply, name_of
+from .models.coordinates import as_asked
+from .models.sight import sizes_seen
 from .models.validate import validate_reply
 from .prompting import PROMPT_LIMIT, make_prompt, repair_prompt
 from .stages.wishes import Ask, Request
 
 MOST_SIDE_BY_SIDE = 4
+"""Requests that are begun at the same time; a client may let fewer of them through."""
 _OWN_FAILURES = (ReplyError, NotRecordedError)
 """What concerns one request only."""
 _PATIENCE = 2.0
@@ -77,6 +82,7 @@ def perform_ask(
     keep: Keep | None = None,
     on_event: OnEvent | None = None,
     refuse: Refuse | None = None,
+    room: str = "",
 ) -> list[AskResult | None]:
     """Answer every request, at most four at a time, and return the results in the order of the requests.
 
@@ -89,6 +95,7 @@ def perform_ask(
         recall: gives an earlier answer to the same prompt (same hash), so that nothing is paid for twice.
         keep: is handed each answer as soon as it is validated.
         refuse: is handed the key of each request whose answers stayed unusable.
+        room: hash of the room's picture, under which prompts and answers are noted for the artist to look at.
 
     Raises:
         ReplyError: an answer stayed unusable after the repair round.
@@ -97,6 +104,8 @@ def perform_ask(
         RoomError: a prompt template does not fit its values.
     """
     prompts = [make_prompt(request, stage) for request in ask.requests]
+    for prompt in prompts:
+        TALK.note_prompt(room, prompt)
     tell = on_event or (lambda event: None)
     results: dict[int, AskResult] = {}
     for index, (request, prompt) in enumerate(zip(ask.requests, prompts, strict=True)):
@@ -105,6 +114,8 @@ def perform_ask(
             results[index] = recalled
             tell(AskEvent(request.key, "recalled", "the earlier answer is used again"))
     todo = [index for index in range(len(prompts)) if index not in results]
+    for index, prompt in zip(todo, mark_shared([prompts[index] for index in todo]), strict=True):
+        prompts[index] = prompt
     errors = _run(todo, ask, prompts, client, cancel, results, keep or (lambda result: None), tell)
     if refuse is not None:
         for index in (i for i, error in errors.items() if isinstance(error, ReplyError)):
@@ -203,7 +214,7 @@ def _recalled(request: Request, prompt: Prompt, recall: Recall | None) -> AskRes
     if earlier is None:
         return None
     try:
-        reply, notes = validate_reply(earlier.text, request.reply, salvage=True)
+        reply, notes = _read(earlier.text, request, prompt, earlier.model, salvage=True)
     except ReplyError:
         return None
     return AskResult(
@@ -228,8 +239,11 @@ def _answer(request: Request, prompt: Prompt, client: ModelClient, cancel: threa
     said: list[tuple[Prompt, Reply]] = []
 
     def call(sent: Prompt) -> str:
+        if sent.repair:
+            TALK.note_repair(prompt, sent)
         reply = client.answer(sent, cancel, lambda text: put(AskEvent(request.key, "progress", text)))
         said.append((sent, reply))
+        TALK.note_reply(sent, reply)
         if isinstance(reply, KeptReply):
             put(AskEvent(request.key, "recalled", "the earlier answer is used again"))
         return reply.text
@@ -238,7 +252,7 @@ def _answer(request: Request, prompt: Prompt, client: ModelClient, cancel: threa
     text = ""
     try:
         text = call(prompt)
-        reply, notes = validate_reply(text, request.reply)
+        reply, notes = _read(text, request, prompt, said[-1][1].model)
         return _result(request.key, prompt, reply, text, notes, said, started)
     except ReplyError as error:
         first = error
@@ -246,17 +260,26 @@ def _answer(request: Request, prompt: Prompt, client: ModelClient, cancel: threa
     second = repair_prompt(prompt, first.problems or (first.message,), text)
     try:
         repaired = call(second)
-        reply, notes = validate_reply(repaired, request.reply, salvage=True)
+        reply, notes = _read(repaired, request, prompt, said[-1][1].model, salvage=True)
         notes = (f"The first answer could not be used: {first.message}", *notes)
         return _result(request.key, prompt, reply, repaired, notes, said, started)
     except ReplyError as error:
         last = error
     try:
-        reply, notes = validate_reply(text, request.reply, salvage=True)
+        reply, notes = _read(text, request, prompt, said[0][1].model if said else "", salvage=True)
     except ReplyError:
         raise last if last.problems else first from None
     return _result(
         request.key, prompt, reply, text, (f"The repair round failed: {last.message}", *notes), said, started
+    )
+
+
+def _read(
+    text: str, request: Request, prompt: Prompt, model: str, salvage: bool = False
+) -> tuple[BaseModel, tuple[str, ...]]:
+    """An answer as the request's type, with places in the picture brought to what was asked for; see `validate_reply`."""
+    return validate_reply(
+        text, request.reply, salvage, lambda data: as_asked(data, model, sizes_seen(prompt.images, model))
     )
 
 

@@ -10,12 +10,10 @@ from concurrent.futures import ThreadPoolExecutor
 from .ask import AskEvent
 from .errors import Cancelled, ModelError
 from .models.faults import ServiceError
-from .models.image_base import FINAL_KINDS, ImageClient, ImageRequest
+from .models.image_base import FINAL_KINDS, SIDE_BY_SIDE, ImageClient, ImageRequest
 from .prompting import fill_template, load_template
 from .stages.texture_wishes import Paint, Painting, PaintRequest
 from .textures.kept import KeptImages, request_hash
-
-SIDE_BY_SIDE = 3
 
 
 def paint(

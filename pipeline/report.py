@@ -105,7 +105,8 @@ def answered_by(memory: Memory, describes: str = "") -> str:
 def _client_words(client: str) -> str:
     if client == "builtin":
         return "the built-in picture analysis, no model"
-    return "recorded answers" if client.split(":")[0] == "recorded" else client or "an unknown client"
+    known = {"recorded": "recorded answers", "manual": "a chat, asked by hand"}
+    return known.get(client.split(":")[0]) or client or "an unknown client"
 
 
 def _facts(memory: Memory) -> Markup:

@@ -315,7 +315,15 @@ class StageSession:
         self._rounds += 1
         try:
             results = perform_ask(
-                wish, self.stage.id, self._client, run.cancel, self._recall, self._keep, on_event, self._refuse
+                wish,
+                self.stage.id,
+                self._client,
+                run.cancel,
+                self._recall,
+                self._keep,
+                on_event,
+                self._refuse,
+                room=run.picture.sha256,
             )
         finally:
             self._asking += time.monotonic() - began

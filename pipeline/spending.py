@@ -10,18 +10,37 @@ from __future__ import annotations
 
 import io
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Protocol
 
 from PIL import Image
 
 from .errors import Cancelled, ModelError, ReplyError
 from .models.base import ModelClient, Prompt, Reply, name_of
+from .models.pace import WAITING
 from .models.prices import Price, PriceList, bundled_prices
 from .models.registry import ClientSettings
-from .models.routing import group_of
+from .models.routing import model_of
 from .models.schema import shape_text
+from .spending_estimate import RunEstimate, StageWork, estimate_run, money, stage_work
+
+__all__ = [
+    "CappedClient",
+    "Estimate",
+    "Meter",
+    "RunEstimate",
+    "SpendingError",
+    "StageWork",
+    "begin_total",
+    "estimate_prompt",
+    "estimate_run",
+    "metered",
+    "money",
+    "picture_tokens",
+    "price_lookup",
+    "stage_work",
+]
 
 BYTES_A_TOKEN = 3.4
 """Of prompts in English and JSON; rather few, so that an estimate is rather high."""
@@ -31,6 +50,14 @@ _ANSWER_TOKENS = {"s01_analysis": 9_000, "s02_graph": 4_000, "s03_layout": 3_000
                   "s05_descriptions": 2_000, "s06_geometry": 12_000}  # fmt: skip
 """Expected length of an answer, thinking included."""
 _ANSWER_ELSE = 6_000
+
+
+class PriceOf(Protocol):
+    """The model that answers a stage's question, and its price, None when it is not known."""
+
+    def __call__(self, stage: str, pictures: int = 1) -> tuple[str, Price | None]:
+        """For a stage's id, and how many pictures the question has."""
+        ...
 
 
 class SpendingError(ModelError):
@@ -65,81 +92,9 @@ def estimate_prompt(prompt: Prompt, price: Price | None, longest_answer: int = 0
     text = len(prompt.text.encode()) + len(shape_text(prompt.schema).encode())
     sent = int(text / BYTES_A_TOKEN) + sum(picture_tokens(image) for image in prompt.images)
     answered = max(_ANSWER_TOKENS.get(prompt.stage, _ANSWER_ELSE), longest_answer)
-    return Estimate(sent, answered, None if price is None else price.of(sent, answered))
-
-
-@dataclass(frozen=True)
-class StageWork:
-    """What a stage asks, for the estimate before a run: calls, and tokens of one call."""
-
-    fewest: int
-    most: int
-    prompt_tokens: int
-    completion_tokens: int
-
-
-def stage_work(stage: str, rounds: int) -> StageWork:
-    """What a stage asks.
-
-    Args:
-        rounds: most rounds of the layout loop.
-    """
-    known = {
-        "s01_analysis": StageWork(2, 4, 9_000, 5_000),
-        "s02_graph": StageWork(1, 2, 4_000, 2_500),
-        "s03_layout": StageWork(min(1, rounds), max(0, rounds), 7_000, 2_000),
-        "s04_auxiliary": StageWork(0, 2, 4_000, 2_000),
-        "s05_descriptions": StageWork(2, 6, 4_500, 1_200),
-        "s06_geometry": StageWork(1, 11, 12_000, 7_000),
-    }
-    return known.get(stage, StageWork(1, 6, 8_000, 5_000))
-
-
-@dataclass(frozen=True)
-class RunEstimate:
-    """What a run may cost: fewest and most calls, tokens and US dollars; `unpriced` names models without a price."""
-
-    calls: tuple[int, int]
-    tokens: tuple[int, int]
-    dollars: tuple[float, float] | None
-    unpriced: tuple[str, ...] = ()
-
-    def sentence(self) -> str:
-        """One line for the artist."""
-        few, many = self.calls
-        calls = f"{few} to {many} questions" if few != many else f"{many} question{'' if many == 1 else 's'}"
-        tokens = f"about {_round(self.tokens[0])} to {_round(self.tokens[1])} tokens"
-        if self.dollars is None:
-            return f"{calls}, {tokens}; the price of {', '.join(self.unpriced)} is not known"
-        if self.dollars[1] == 0.0:
-            return f"{calls}, {tokens}, free"
-        return f"{calls}, {tokens}, {money(self.dollars[0])} to {money(self.dollars[1])}"
-
-
-def estimate_run(
-    stages: Sequence[str], rounds: int, price_of: Callable[[str], tuple[str, Price | None]]
-) -> RunEstimate:
-    """What a run of these stages may cost.
-
-    Args:
-        stages: ids of the stages that will be run; rounds: most rounds of the layout loop.
-        price_of: model and price for a stage.
-    """
-    calls, tokens, dollars = [0, 0], [0, 0], [0.0, 0.0]
-    unpriced: list[str] = []
-    for stage in stages:
-        work = stage_work(stage, rounds)
-        model, price = price_of(stage)
-        for end, number in enumerate((work.fewest, work.most)):
-            calls[end] += number
-            # The most: every answer twice as long as usual, with thinking.
-            answered = work.completion_tokens * (1 + 2 * end)
-            tokens[end] += number * (work.prompt_tokens + answered)
-            dollars[end] += price.of(number * work.prompt_tokens, number * answered) if price else 0.0
-        if price is None and model not in unpriced and work.most:
-            unpriced.append(model)
-    known = None if unpriced else (dollars[0], dollars[1])
-    return RunEstimate((calls[0], calls[1]), (tokens[0], tokens[1]), known, tuple(unpriced))
+    # The shared beginning may have to be kept first, which costs more than just reading it.
+    kept = int(len(prompt.halves()[0].encode()) / BYTES_A_TOKEN) if price is not None and price.written else 0
+    return Estimate(sent, answered, None if price is None else price.of(sent, answered, written=kept))
 
 
 class Meter:
@@ -155,6 +110,7 @@ class Meter:
         self._reserved = 0.0
         self._unpriced: set[str] = set()
         self._tokens = [0, 0]
+        self._cached = 0
         self._longest: dict[str, int] = {}
         self._lock = threading.Lock()
 
@@ -169,6 +125,12 @@ class Meter:
         """Tokens sent and answered since this meter began."""
         with self._lock:
             return self._tokens[0], self._tokens[1]
+
+    @property
+    def cached(self) -> int:
+        """Of the tokens sent, those that services had kept from earlier prompts."""
+        with self._lock:
+            return self._cached
 
     @property
     def unpriced(self) -> tuple[str, ...]:
@@ -213,6 +175,7 @@ class Meter:
         with self._lock:
             self._tokens[0] += reply.prompt_tokens
             self._tokens[1] += reply.completion_tokens
+            self._cached += reply.cached_tokens
             self._longest[stage] = max(self._longest.get(stage, 0), reply.completion_tokens)
             if not priced:
                 self._unpriced.add(model)
@@ -222,10 +185,11 @@ class CappedClient:
     """A client whose every question is priced before it is sent and counted after it was answered.
 
     Args:
-        inner: who answers; price_of: the model that answers a stage, and its price (None when not known).
+        inner: who answers; price_of: for a stage and a number of pictures the model that answers, and its price (None
+            when not known).
     """
 
-    def __init__(self, inner: ModelClient, meter: Meter, price_of: Callable[[str], tuple[str, Price | None]]) -> None:
+    def __init__(self, inner: ModelClient, meter: Meter, price_of: PriceOf) -> None:
         self.inner, self.meter, self._price_of = inner, meter, price_of
         self.name, self.describes = inner.name, inner.describes
 
@@ -239,7 +203,7 @@ class CappedClient:
         Raises:
             SpendingError: the question would pass the cap, or there is a cap and the price is not known. Nothing was sent.
         """
-        model, price = self._price_of(prompt.stage)
+        model, price = self._price_of(prompt.stage, len(prompt.images))
         if price is None and self.meter.cap > 0:
             raise SpendingError(
                 f"The price of {model} is not known, so the spending cap cannot be kept.",
@@ -251,7 +215,8 @@ class CappedClient:
         spent, sent = 0.0, threading.Event()
 
         def tell(text: str) -> None:
-            sent.set()
+            if text != WAITING:
+                sent.set()
             if progress:
                 progress(text)
 
@@ -281,7 +246,7 @@ class CappedClient:
 def _cost(reply: Reply, price: Price, estimate: Estimate) -> float:
     """What an answer cost; by our own count where the service gives none."""
     if reply.prompt_tokens or reply.completion_tokens:
-        return price.of(reply.prompt_tokens, reply.completion_tokens)
+        return price.of(reply.prompt_tokens, reply.completion_tokens, reply.cached_tokens, reply.written_tokens)
     return price.of(estimate.prompt_tokens, int(len(reply.text.encode()) / BYTES_A_TOKEN) + 1)
 
 
@@ -289,12 +254,12 @@ def _sent_only(price: Price | None, estimate: Estimate) -> float:
     return price.of(estimate.prompt_tokens, 0) if price else 0.0
 
 
-def price_lookup(prices: PriceList, settings: ClientSettings) -> Callable[[str], tuple[str, Price | None]]:
-    """For a stage: the model that answers it and its price."""
+def price_lookup(prices: PriceList, settings: ClientSettings) -> PriceOf:
+    """For a stage and a number of pictures: the model that answers and its price."""
     found: dict[str, tuple[str, Price | None]] = {}
 
-    def look(stage: str) -> tuple[str, Price | None]:
-        model = settings.models.get(group_of(stage), "").strip() or settings.model.strip()
+    def look(stage: str, pictures: int = 1) -> tuple[str, Price | None]:
+        model = model_of(settings.models, settings.model, stage, pictures)
         if model not in found:
             found[model] = (model, prices.find(settings.base_url, model))
         return found[model]
@@ -324,14 +289,3 @@ def begin_total(client: ModelClient, spent: float) -> None:
         if isinstance(found, CappedClient):
             found.meter.raise_to(spent)
         found = getattr(found, "inner", None)
-
-
-def money(dollars: float) -> str:
-    """An amount for the artist: "$0.042", "$1.30"."""
-    if dollars and dollars < 0.1:
-        return f"${dollars:.3f}" if dollars >= 0.0005 else "less than $0.001"
-    return f"${dollars:.2f}"
-
-
-def _round(tokens: int) -> str:
-    return f"{round(tokens / 1000)}k" if tokens >= 1000 else str(tokens)

@@ -11,6 +11,7 @@ from .errors import Cancelled, ModelError
 from .models.addresses import is_local_url
 from .models.image_base import ImageClient, ImageRequest, PaintedImage
 from .models.image_registry import ImageSettings
+from .models.pace import WAITING
 from .spending import Meter, SpendingError
 
 
@@ -40,15 +41,22 @@ class CappedPainter:
             )
         reserved = self._price or 0.0
         self.meter.reserve(reserved)
-        spent = 0.0
+        spent, sent = 0.0, threading.Event()
+
+        def tell(text: str) -> None:
+            if text != WAITING:
+                sent.set()
+            if progress:
+                progress(text)
+
         try:
-            made = self.inner.paint(request, cancel, progress)
+            made = self.inner.paint(request, cancel, tell)
             if made.cost is None and self._price is not None:
                 made = replace(made, cost=self._price)
             spent = made.cost or 0.0
         except Cancelled:
             # A service that has begun to paint bills the image, whoever hangs up.
-            spent = reserved
+            spent = reserved if sent.is_set() else 0.0
             raise
         except ModelError as error:
             spent = reserved if getattr(error, "kind", "") == "timeout" else 0.0

@@ -52,7 +52,7 @@ class Client:
 
 
 def capped(client, cap=0.0, spent=0.0, price=PRICE):
-    return CappedClient(client, Meter(cap, spent), lambda stage: ("m", price))
+    return CappedClient(client, Meter(cap, spent), lambda stage, pictures: ("m", price))
 
 
 def ask(client, prompt=PROMPT):

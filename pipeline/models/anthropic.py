@@ -10,8 +10,9 @@ from typing import Any
 
 from .base import Prompt
 from .faults import Fault
-from .http_client import Habits, HttpClient, picture_kind, picture_text, with_schema
+from .http_client import Habits, HttpClient, halves, picture_kind, picture_text
 from .reply_reader import Ending, ReplyReader, count
+from .sight import Sight, sight_of_claude
 
 VERSION = "2023-06-01"
 _MOST_TOKENS = 32_000
@@ -66,8 +67,11 @@ class AnthropicReader(ReplyReader):
         if not isinstance(usage, dict):
             return
         names = ("input_tokens", "cache_creation_input_tokens", "cache_read_input_tokens")
+        sent, written, cached = (count(usage.get(name)) for name in names)
         # The last event repeats what the first one counted, with the answer's tokens so far.
-        self.prompt_tokens = max(self.prompt_tokens, sum(count(usage.get(name)) for name in names))
+        self.prompt_tokens = max(self.prompt_tokens, sent + written + cached)
+        self.cached_tokens = max(self.cached_tokens, cached)
+        self.written_tokens = max(self.written_tokens, written)
         self.completion_tokens = max(self.completion_tokens, count(usage.get("output_tokens")))
 
 
@@ -92,14 +96,19 @@ class AnthropicClient(HttpClient):
 
     def body(self, prompt: Prompt, habits: Habits) -> dict[str, Any]:
         """The request's body."""
-        content: list[dict[str, Any]] = [
+        shared, rest = halves(prompt, in_words=habits.structure != "schema")
+        content: list[dict[str, Any]] = []
+        if shared:
+            marked = {"cache_control": {"type": "ephemeral"}} if habits.cache else {}
+            content.append({"type": "text", "text": shared, **marked})
+        content += [
             {
                 "type": "image",
                 "source": {"type": "base64", "media_type": picture_kind(image), "data": picture_text(image)},
             }
             for image in prompt.images
         ]
-        content.append({"type": "text", "text": prompt.text if habits.structure == "schema" else with_schema(prompt)})
+        content.append({"type": "text", "text": rest})
         body: dict[str, Any] = {
             "model": self.model,
             "max_tokens": habits.most_tokens,
@@ -111,8 +120,20 @@ class AnthropicClient(HttpClient):
             body["stream"] = True
         return body
 
+    @property
+    def sight(self) -> Sight:
+        """What this model sees of a picture."""
+        return sight_of_claude(self.model)
+
+    @property
+    def keeps_marked(self) -> bool:
+        """A marked beginning is kept from the first answer's begin on."""
+        return self._habits.cache
+
     def humbler(self, habits: Habits, fault: Fault) -> Habits | None:
-        """Also a shorter answer, where the model says that it cannot write such a long one."""
+        """Also a shorter answer, where the model says that it cannot write such a long one; and no mark for its cache."""
+        if habits.cache and fault.error.status == 400 and "cache_control" in fault.sentence.lower():
+            return replace(habits, cache=False)
         most = _LIMIT.search(fault.sentence) if fault.error.status == 400 else None
         if most and 256 <= int(most.group(1)) < habits.most_tokens:
             return replace(habits, most_tokens=int(most.group(1)))

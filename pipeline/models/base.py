@@ -20,6 +20,8 @@ class Prompt:
         hash: sha256 of text and pictures, hexadecimal; recordings keep it to notice drift.
         facts: typed data for the built-in client only.
         repair: True for the second try that quotes validation errors back.
+        shared: how many characters at the beginning of `text` other prompts that are asked with it begin with too, 0
+            when that is too little to matter; services keep such beginnings, so that they cost less.
     """
 
     stage: str
@@ -31,13 +33,19 @@ class Prompt:
     hash: str
     facts: Mapping[str, Any] = field(default_factory=dict)
     repair: bool = False
+    shared: int = 0
+
+    def halves(self) -> tuple[str, str]:
+        """The text's shared beginning, "" when there is none, and the rest; together they are the text."""
+        return self.text[: self.shared], self.text[self.shared :]
 
 
 @dataclass(frozen=True)
 class Reply:
     """A client's answer: the text as the model wrote it, and what it took.
 
-    `cost` is in US dollars, None when unknown. `notes` are sentences for the report, such as a recording's drift.
+    `cost` is in US dollars, None when unknown. `notes` are sentences for the report, such as a recording's drift. Of
+    `prompt_tokens`, `cached_tokens` were kept by the service from earlier prompts, and `written_tokens` are kept for later ones.
     """
 
     text: str
@@ -47,6 +55,8 @@ class Reply:
     cost: float | None = None
     seconds: float = 0.0
     notes: tuple[str, ...] = ()
+    cached_tokens: int = 0
+    written_tokens: int = 0
 
     def __post_init__(self) -> None:
         # Half of a surrogate pair is no character: neither a file nor Blender can hold it.

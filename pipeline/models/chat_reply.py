@@ -32,6 +32,8 @@ class ChatReader(ReplyReader):
     def _usage(self, usage: dict[str, Any]) -> None:
         self.prompt_tokens = count(usage.get("prompt_tokens"))
         self.completion_tokens = count(usage.get("completion_tokens"))
+        details = usage.get("prompt_tokens_details")
+        self.cached_tokens = count(details.get("cached_tokens")) if isinstance(details, dict) else 0
         cost = usage.get("cost")
         if isinstance(cost, (int, float)) and not isinstance(cost, bool) and cost >= 0:
             self.cost = float(cost)

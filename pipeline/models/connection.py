@@ -24,6 +24,7 @@ from .listing import ModelInfo, close_names, list_models, takes_pictures
 from .presets import Preset
 from .registry import ClientSettings, service_client
 from .retry import RetryPolicy
+from .routing import TEXT
 from .tolerant import read_json
 
 State = Literal["good", "bad", "unsure", "not tried"]
@@ -71,9 +72,9 @@ def try_connection(
     names = list(dict.fromkeys([settings.model.strip(), *(m.strip() for m in settings.models.values())]))
     first: ConnectionReport | None = None
     for name in names:
-        # Only the stages that look at pictures need eyes.
-        groups = [group for group, model in settings.models.items() if model.strip() == name]
-        eyes = name == settings.model.strip() or bool({"seeing", "layout"} & set(groups))
+        # Every group of stages shows pictures; only what answers questions without them needs no eyes.
+        groups = {group for group, model in settings.models.items() if model.strip() == name}
+        eyes = name == settings.model.strip() or bool(groups - {TEXT})
         report = _Trial(replace(settings, model=name), chosen, eyes, cancel, progress or (lambda text: None)).run()
         if report.level == "bad":
             return report
@@ -115,7 +116,7 @@ class _Trial:
             return self._report("bad", "reply", error.message, error.fix)
         self._reach(3)
         structured = self._structured(client, reply)
-        pictures = self._pictures(client) if self._eyes else self._step(4, "not tried", "no stage needs them")
+        pictures = self._pictures(client) if self._eyes else self._step(4, "not tried", "it is asked without")
         return self._verdict(client, reply, structured, pictures)
 
     def _structured(self, client: HttpClient, reply: Reply) -> State:

@@ -110,18 +110,33 @@ _LONGER = "Raise the time limit in the settings, or choose a faster model."
 
 
 def _host(url: str) -> str:
-    return urlsplit(url).hostname or "the given address"
+    """An address's host for a sentence; a redirect's may be anything."""
+    try:
+        host = urlsplit(url).hostname or ""
+    except ValueError:
+        host = ""
+    return host if host.isprintable() and 0 < len(host) < 254 else "an address that cannot be right"
 
 
 def _fault(message: str, fix: str, kind: FaultKind, retry: bool = False) -> Fault:
     return Fault(ServiceError(message, fix, kind), retry=retry)
 
 
+class _Session(requests.Session):
+    """Leaves redirects alone. `requests` would look at them even when told not to follow: read their body whole,
+    whatever its size, and stumble over addresses that are none.
+    """
+
+    def get_redirect_target(self, resp: requests.Response) -> str | None:
+        """Never anywhere."""
+        return None
+
+
 def _work(call: Call, limits: Limits, leash: Leash, outcome: queue.SimpleQueue[str | Answer | Fault]) -> None:
     """The worker thread: everything that may block."""
     result: Answer | Fault
     try:
-        with requests.Session() as session:
+        with _Session() as session:
             adapter = LeashedAdapter(leash)
             session.mount("http://", adapter)
             session.mount("https://", adapter)
@@ -142,7 +157,7 @@ def _follow(session: requests.Session, call: Call, limits: Limits, tell: Callabl
         answer = _send(session, url, call, limits, tell)
         if answer.status not in (301, 302, 303, 307, 308):
             return answer
-        target = urljoin(url, answer.headers.get("Location", ""))
+        target = _target(url, answer.headers.get("Location", ""))
         if not _same_place(url, target):
             raise _fault(
                 f"The service at {_host(url)} sends us on to {_host(target)}; the key was not sent there.",
@@ -151,6 +166,14 @@ def _follow(session: requests.Session, call: Call, limits: Limits, tell: Callabl
             )
         url = target
     raise _fault(f"The service at {_host(url)} redirects in a circle.", "Check the base URL.", "redirect")
+
+
+def _target(url: str, location: str) -> str:
+    """Where a redirect leads, "" where that is no address."""
+    try:
+        return urljoin(url, location)
+    except ValueError:
+        return ""
 
 
 def _same_place(old: str, new: str) -> bool:

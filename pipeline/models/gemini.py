@@ -11,9 +11,10 @@ from urllib.parse import quote
 from .base import Prompt
 from .exchange import Answer
 from .faults import Fault, ServiceError, quoted
-from .http_client import Habits, HttpClient, picture_kind, picture_text, with_schema
+from .http_client import Habits, HttpClient, halves, picture_kind, picture_text
 from .reply_reader import Ending, ReplyReader, count
 from .schema import older_schema
+from .sight import Sight
 
 _STOPPED: dict[str, Ending] = {"STOP": "stop", "MAX_TOKENS": "cut"}
 
@@ -35,6 +36,7 @@ class GeminiReader(ReplyReader):
         usage = data.get("usageMetadata")
         if isinstance(usage, dict):
             self.prompt_tokens = count(usage.get("promptTokenCount"))
+            self.cached_tokens = count(usage.get("cachedContentTokenCount"))
             # Thinking is paid for like the answer.
             self.completion_tokens = count(usage.get("candidatesTokenCount")) + count(usage.get("thoughtsTokenCount"))
         feedback = data.get("promptFeedback")
@@ -81,6 +83,11 @@ class GeminiClient(HttpClient):
         "json mode",
     )
 
+    @property
+    def sight(self) -> Sight:
+        """Requests with their pictures inside must stay under 20 MB, in base64."""
+        return Sight(request_bytes=14_000_000)
+
     def url(self, habits: Habits) -> str:
         """Where a prompt is sent."""
         name = quote(self.model.removeprefix("models/"), safe="-._/")
@@ -89,11 +96,13 @@ class GeminiClient(HttpClient):
 
     def body(self, prompt: Prompt, habits: Habits) -> dict[str, Any]:
         """The request's body."""
-        parts: list[dict[str, Any]] = [
+        # What other prompts begin with too comes first: Gemini keeps beginnings by itself.
+        shared, rest = halves(prompt, in_words=habits.structure in ("object", "none"))
+        parts: list[dict[str, Any]] = [{"text": shared}] if shared else []
+        parts += [
             {"inline_data": {"mime_type": picture_kind(image), "data": picture_text(image)}} for image in prompt.images
         ]
-        in_words = habits.structure in ("object", "none")
-        parts.append({"text": with_schema(prompt) if in_words else prompt.text})
+        parts.append({"text": rest})
         body: dict[str, Any] = {"contents": [{"role": "user", "parts": parts}]}
         if habits.structure != "none":
             body["generationConfig"] = {"responseMimeType": "application/json"}

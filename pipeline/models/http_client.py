@@ -20,9 +20,12 @@ from .endpoint import Endpoint
 from .exchange import Answer, Call, exchange
 from .faults import Fault, status_fault
 from .limits import Limits, Route
+from .pace import MOST, Pace
 from .reply_reader import ReplyReader
 from .retry import RetryPolicy, with_retries
 from .schema import shape_text
+from .sight import Sight, fitted
+from .warming import Warming
 
 Structure = Literal["schema", "older", "object", "none"]
 
@@ -35,12 +38,14 @@ class Habits:
         structure: how a structured reply is asked for: by schema, by the service's older kind of schema, as any JSON
             object, or in words only. stream, stream_usage: streaming, with token counts.
         most_tokens: longest answer to ask for, 0 where none has to be given.
+        cache: the beginning that prompts share is marked, so that the service keeps it.
     """
 
     structure: Structure = "schema"
     stream: bool = True
     stream_usage: bool = True
     most_tokens: int = 0
+    cache: bool = True
 
 
 class HttpClient(Endpoint):
@@ -48,7 +53,7 @@ class HttpClient(Endpoint):
 
     Args:
         base_url: such as "http://localhost:1234/v1"; api_key: "" for services that need none.
-        route: proxy and certificates.
+        route: proxy and certificates; pace: how many requests may be under way, shared with the service's other clients.
 
     Raises:
         ModelError: the address, the model's name or the key cannot be right.
@@ -67,8 +72,11 @@ class HttpClient(Endpoint):
         limits: Limits | None = None,
         retries: RetryPolicy | None = None,
         route: Route | None = None,
+        pace: Pace | None = None,
     ) -> None:
         super().__init__(base_url, model, api_key, route)
+        self.pace = pace or Pace(MOST)
+        self._warming = Warming()
         self._limits = limits or Limits()
         self._retries = retries or RetryPolicy()
         self._habits = self.first_habits
@@ -78,6 +86,16 @@ class HttpClient(Endpoint):
     def structure(self) -> Structure:
         """How a structured reply is asked for, as far as this service has been found to accept it."""
         return self._habits.structure
+
+    @property
+    def keeps_marked(self) -> bool:
+        """Whether the service keeps beginnings that are marked, from the moment on when it begins to answer."""
+        return False
+
+    @property
+    def sight(self) -> Sight:
+        """What the service's models see of a picture."""
+        return Sight()
 
     def url(self, habits: Habits) -> str:
         """Where a prompt is sent."""
@@ -115,12 +133,22 @@ class HttpClient(Endpoint):
             ReplyError: the answer is empty.
             Cancelled: `cancel` was set.
         """
-        started = time.monotonic()
-        deadline = started + self._limits.total
-        reply = with_retries(
-            lambda: self._negotiate(prompt, deadline, cancel, progress), self._retries, deadline, cancel, progress
-        )
-        return replace(reply, seconds=time.monotonic() - started)
+        prompt = replace(prompt, images=fitted(prompt.images, self.sight))
+        with self.pace.turn(cancel, progress):
+            # Waiting for a turn is not the service's slowness.
+            started = time.monotonic()
+            deadline = started + self._limits.total
+            reply = with_retries(
+                lambda: self._paced(prompt, deadline, cancel, progress), self._retries, deadline, cancel, progress
+            )
+            return replace(reply, seconds=time.monotonic() - started)
+
+    def _paced(
+        self, prompt: Prompt, deadline: float, cancel: threading.Event, progress: Callable[[str], None] | None
+    ) -> Reply:
+        """One try, from which all clients of the service learn."""
+        with self.pace.noting(self._retries.patience):
+            return self._negotiate(prompt, deadline, cancel, progress)
 
     def _negotiate(
         self, prompt: Prompt, deadline: float, cancel: threading.Event, progress: Callable[[str], None] | None
@@ -147,7 +175,26 @@ class HttpClient(Endpoint):
         cancel: threading.Event,
         progress: Callable[[str], None] | None,
     ) -> Reply:
+        beginning = prompt.halves()[0] if self.keeps_marked else ""
+        with self._warming.turn(beginning, cancel) as answering:
+            return self._exchanged(prompt, habits, deadline, cancel, progress, answering)
+
+    def _exchanged(
+        self,
+        prompt: Prompt,
+        habits: Habits,
+        deadline: float,
+        cancel: threading.Event,
+        progress: Callable[[str], None] | None,
+        answering: Callable[[], None],
+    ) -> Reply:
+        """Send it and read the reply; `answering` is called when the reply begins."""
         reader = self.reader(self.host, self._key)
+
+        def take(piece: bytes) -> bool:
+            answering()
+            return reader.feed(piece)
+
         accept = "text/event-stream, application/json" if habits.stream else "application/json"
         call = Call(
             url=self.url(habits),
@@ -156,7 +203,7 @@ class HttpClient(Endpoint):
             key_header=self.key_header,
             headers={"Accept": accept, **self.headers()},
             route=self._route,
-            enough=reader.feed,
+            enough=take,
         )
         # A one-shot answer sends nothing until it is complete, so only the total limit can end it.
         limits = self._limits if habits.stream else replace(self._limits, read=self._limits.total)
@@ -177,6 +224,12 @@ class HttpClient(Endpoint):
         if habits.stream and "stream" in said:
             return replace(habits, stream=False)
         return None
+
+
+def halves(prompt: Prompt, in_words: bool) -> tuple[str, str]:
+    """The prompt's shared beginning, "" when there is none, and the rest, with the schema in words where asked for."""
+    text = with_schema(prompt) if in_words else prompt.text
+    return text[: prompt.shared], text[prompt.shared :]
 
 
 def picture_kind(image: bytes) -> str:

@@ -22,12 +22,14 @@ from .endpoint import Endpoint
 from .exchange import Answer, Call, exchange
 from .faults import Fault, FaultKind, ServiceError, plain, quoted, status_fault
 from .limits import Limits, Route
+from .pace import Pace
 from .retry import RetryPolicy, with_retries
 
 Proportions = Literal["square", "wide", "tall"]
 LARGEST_REPLY = 40_000_000
 MOST_PIXELS = 20_000_000
 LEAST_SIDE = 64
+SIDE_BY_SIDE = 3
 _FORMATS = ("PNG", "JPEG", "WEBP")
 IMAGE_LIMITS = Limits(read=300.0, total=420.0, size=LARGEST_REPLY)
 IMAGE_RETRIES = RetryPolicy(tries=2)
@@ -83,7 +85,7 @@ class ImageHttpClient(Endpoint):
 
     Args:
         base_url: such as "https://api.openai.com/v1"; api_key: "" for services that need none.
-        route: proxy and certificates.
+        route: proxy and certificates; pace: how many images may be under way.
 
     Raises:
         ModelError: the address, the model's name or the key cannot be right.
@@ -99,8 +101,10 @@ class ImageHttpClient(Endpoint):
         limits: Limits | None = None,
         retries: RetryPolicy | None = None,
         route: Route | None = None,
+        pace: Pace | None = None,
     ) -> None:
         super().__init__(base_url, model, api_key, route)
+        self.pace = pace or Pace(SIDE_BY_SIDE)
         self._limits, self._retries = limits or IMAGE_LIMITS, retries or IMAGE_RETRIES
 
     def url(self) -> str:
@@ -119,12 +123,24 @@ class ImageHttpClient(Endpoint):
         self, request: ImageRequest, cancel: threading.Event, progress: Callable[[str], None] | None = None
     ) -> PaintedImage:
         """See `ImageClient.paint`."""
-        started = time.monotonic()
-        deadline = started + self._limits.total
-        made = with_retries(
-            lambda: self._once(request, deadline, cancel, progress), self._retries, deadline, cancel, progress
-        )
-        return replace(made, seconds=time.monotonic() - started)
+        with self.pace.turn(cancel, progress):
+            started = time.monotonic()
+            deadline = started + self._limits.total
+            made = with_retries(
+                lambda: self._paced(request, deadline, cancel, progress), self._retries, deadline, cancel, progress
+            )
+            return replace(made, seconds=time.monotonic() - started)
+
+    def _paced(
+        self,
+        request: ImageRequest,
+        deadline: float,
+        cancel: threading.Event,
+        progress: Callable[[str], None] | None,
+    ) -> PaintedImage:
+        """One try, from which the others learn."""
+        with self.pace.noting(self._retries.patience):
+            return self._once(request, deadline, cancel, progress)
 
     def _once(
         self,

@@ -174,10 +174,17 @@ def _price(pricing: Any) -> Price | None:
     """OpenRouter gives US dollars for one token, as text."""
     if not isinstance(pricing, dict):
         return None
+    low, high = _dollars(pricing.get("prompt")), _dollars(pricing.get("completion"))
+    if low is None or high is None:
+        return None
+    kept = _dollars(pricing.get("input_cache_read")), _dollars(pricing.get("input_cache_write"))
+    return Price(low, high, datetime.now(UTC).date().isoformat(), True, *kept)
+
+
+def _dollars(text: Any) -> float | None:
+    """US dollars for a million tokens; None where nothing, or nothing that can be right, is told."""
     try:
-        low, high = float(pricing["prompt"]) * 1e6, float(pricing["completion"]) * 1e6
-    except (KeyError, TypeError, ValueError):
+        dollars = float(text) * 1e6
+    except (TypeError, ValueError):
         return None
-    if not (0 <= low < 1e4 and 0 <= high < 1e4):
-        return None
-    return Price(round(low, 6), round(high, 6), datetime.now(UTC).date().isoformat(), own=True)
+    return round(dollars, 6) if 0 <= dollars < 1e4 else None

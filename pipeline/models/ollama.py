@@ -23,20 +23,23 @@ class OllamaReader(ReplyReader):
 
     def __init__(self, host: str, key: str) -> None:
         super().__init__(host, key)
-        self._line = b""
+        self._begin = 0
+        """Where in the body the line begins that is not whole yet."""
 
     def feed(self, piece: bytes) -> bool:
         """Take a piece of the body; True when the reply is complete."""
         self._body += piece
-        *lines, self._line = (self._line + piece).split(b"\n")
-        for line in lines:
-            self._take_line(line)
+        end = self._body.rfind(b"\n", len(self._body) - len(piece))
+        if end >= 0:
+            lines, self._begin = bytes(self._body[self._begin : end]).split(b"\n"), end + 1
+            for line in lines:
+                self._take_line(line)
         return self.done or self._error is not None
 
     def finish(self, content_type: str, model: str) -> Any:
         """As `ReplyReader.finish`."""
         if not self.done and self._error is None:
-            self._take_line(self._line)
+            self._take_line(bytes(self._body[self._begin :]))
         if self._known or self._error is not None:
             if self._error is None and not self.done:
                 raise self.broken()

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 from urllib.parse import urlsplit
 
-ClientKind = Literal["builtin", "openai", "anthropic", "gemini", "ollama", "recorded"]
+ClientKind = Literal["builtin", "openai", "anthropic", "gemini", "ollama", "recorded", "manual"]
 
 
 @dataclass(frozen=True)
@@ -18,7 +18,7 @@ class Preset:
         id: as in the preferences; number: kept in Blender's preferences file, never changed.
         title, tooltip: for the list; note: where to get a key and what it costs, or that it is local.
         key_page: address of the page with the keys; key_variable: environment variable in which its users keep it.
-        key: whether the service wants a key.
+        key: whether the service wants a key; at_once: questions that it is sent side by side, 0 for as many as usual.
     """
 
     id: str
@@ -31,6 +31,7 @@ class Preset:
     key_page: str = ""
     key_variable: str = ""
     key: Literal["needed", "optional", "none"] = "none"
+    at_once: int = 0
 
     @property
     def host(self) -> str:
@@ -143,6 +144,7 @@ PRESETS = (
         "openai",
         "http://localhost:8000/v1",
         key="optional",
+        at_once=4,
     ),
     Preset(
         "CUSTOM",
@@ -153,6 +155,14 @@ PRESETS = (
         "openai",
         "http://localhost:1234/v1",
         key="optional",
+    ),
+    Preset(
+        "MANUAL",
+        12,
+        "Any chat, by hand",
+        "You copy each prompt into any chat and paste its answer here; no key is needed",
+        "Works with any chat that sees pictures, without a key. A room takes about 10 to 30 prompts. Blender sends nothing.",
+        "manual",
     ),
     Preset(
         "RECORDED",

@@ -33,6 +33,7 @@ class Price:
 
     Attributes:
         input, output: of what is sent, and of what is answered (thinking included).
+        cached: of what the service kept of earlier prompts; written: of what it keeps for later ones; None: as input.
         date: when it was true, such as "2026-11"; "" where it is always true. own: given by the artist or the service.
     """
 
@@ -40,15 +41,26 @@ class Price:
     output: float
     date: str = ""
     own: bool = False
+    cached: float | None = None
+    written: float | None = None
 
     @property
     def is_free(self) -> bool:
         """Whether nothing is asked for."""
         return self.input == self.output == 0.0
 
-    def of(self, prompt_tokens: int, completion_tokens: int) -> float:
-        """The price of one answer in US dollars."""
-        return (self.input * prompt_tokens + self.output * completion_tokens) / 1e6
+    def of(self, prompt_tokens: int, completion_tokens: int, cached: int = 0, written: int = 0) -> float:
+        """The price of one answer in US dollars.
+
+        Args:
+            cached, written: how many of the prompt's tokens came from the service's cache, and went into it.
+        """
+        cached = min(cached, prompt_tokens)
+        written = min(written, prompt_tokens - cached)
+        sent = self.input * (prompt_tokens - cached - written)
+        sent += (self.input if self.cached is None else self.cached) * cached
+        sent += (self.input if self.written is None else self.written) * written
+        return (sent + self.output * completion_tokens) / 1e6
 
 
 FREE = Price(0.0, 0.0)
@@ -97,6 +109,7 @@ class PriceList:
         """The list as JSON-like data."""
         return [
             {"host": host, "model": model, "input": p.input, "output": p.output, "date": p.date, "own": p.own}
+            | {name: value for name, value in (("cached", p.cached), ("written", p.written)) if value is not None}
             for (host, model), p in sorted(self._prices.items())
         ]
 
@@ -171,7 +184,15 @@ def _price(entry: Mapping[str, Any]) -> Price | None:
     low, high = (float(n) for n in numbers if n is not None)
     if not (math.isfinite(low) and math.isfinite(high) and 0 <= low <= _MOST and 0 <= high <= _MOST):
         return None
-    return Price(low, high, str(entry.get("date", "")), bool(entry.get("own", False)))
+    kept = [_dollars(entry.get(name)) for name in ("cached", "written")]
+    return Price(low, high, str(entry.get("date", "")), bool(entry.get("own", False)), *kept)
+
+
+def _dollars(value: Any) -> float | None:
+    """A price that may be left out; None where it is none."""
+    if not isinstance(value, (int, float)) or isinstance(value, bool) or not 0 <= value <= _MOST:
+        return None
+    return float(value)
 
 
 def _plain(model: str) -> str:

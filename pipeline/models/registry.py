@@ -11,6 +11,8 @@ Environment variables (for the command; the add-on's preferences come first in B
   `_MODELLING` and `_SURFACES`: another one for stage 1, stages 2 to 4, 5 to 7 and 8 to 10.
 - `CODE_AS_ROOM_API_KEY`: the key; may be left out for local services. Where it is not set, the variable that the
   provider's users know is looked at (OPENAI_API_KEY and the like), for the provider's own address only.
+- `CODE_AS_ROOM_MODEL_TEXT`: a model for questions without pictures; it needs no eyes.
+- `CODE_AS_ROOM_AT_ONCE`: most questions side by side, 1 to 4.
 - `CODE_AS_ROOM_TIMEOUT`: most seconds that one question may take, and that the service may be silent for.
 - `CODE_AS_ROOM_PROXY`, `CODE_AS_ROOM_CA_BUNDLE`: an HTTP proxy, and a file with the certificates to trust. Where
   they are not set, HTTPS_PROXY, NO_PROXY and REQUESTS_CA_BUNDLE hold.
@@ -26,10 +28,12 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from ..errors import ModelError
+from .addresses import is_own_network
 from .base import ModelClient
 from .limits import Limits, checked_route
+from .pace import Pace
 from .presets import PRESETS, ClientKind, own_key_variable, preset
-from .routing import GROUPS, RoutingClient
+from .routing import GROUPS, TEXT, RoutingClient
 
 if TYPE_CHECKING:
     from .http_client import HttpClient
@@ -37,6 +41,7 @@ if TYPE_CHECKING:
 
 SERVICES = ("openai", "anthropic", "gemini", "ollama")
 """Kinds that send questions to a service."""
+BY_HAND = ModelError("A chat can only be asked by hand in Blender's window.", "Choose another provider.")
 
 
 @dataclass(frozen=True)
@@ -44,9 +49,12 @@ class ClientSettings:
     """Which client answers.
 
     Attributes:
-        kind: "builtin" needs nothing else; "recorded" needs `folder`; the others need `base_url` and `model`.
+        kind: "builtin" needs nothing else; "recorded" needs `folder`, "manual" takes one for pictures; the others need
+            `base_url` and `model`.
         api_key: never shown in `repr`.
-        models: another model for a group of stages (see `routing.GROUPS`); the main one where none is given.
+        models: another model for a group of stages (see `routing.GROUPS`); the main one where none is given. The one
+            of "text" answers what has no picture.
+        at_once: most questions side by side, 0 for what suits the service.
         proxy: address of an HTTP proxy, "" for the environment's; may hold a password, so never shown either.
         ca_bundle: file with certificates to trust, "" for the usual ones.
         read_timeout: seconds a streaming service may be silent; total_timeout: seconds for one question in all.
@@ -65,6 +73,7 @@ class ClientSettings:
     models: Mapping[str, str] = field(default_factory=dict)
     proxy: str = field(default="", repr=False)
     spending_cap: float = 0.0
+    at_once: int = 0
 
     @property
     def is_service(self) -> bool:
@@ -86,8 +95,10 @@ def settings_from_environment(environment: Mapping[str, str] | None = None) -> C
     provider, base_url = value("PROVIDER"), value("BASE_URL")
     chosen = preset(provider) if provider else preset("CUSTOM" if base_url else "BUILTIN")
     if provider and chosen.id == "CUSTOM" and provider.lower() != "custom":
-        names = ", ".join(p.id.lower() for p in PRESETS if p.id != "RECORDED")
+        names = ", ".join(p.id.lower() for p in PRESETS if p.id not in ("RECORDED", "MANUAL"))
         raise ModelError(f"CODE_AS_ROOM_PROVIDER names no provider: {provider!r}.", f"Choose one of {names}.")
+    if chosen.kind == "manual":
+        raise ModelError(BY_HAND.message, BY_HAND.fix)
     if chosen.kind not in SERVICES:
         if not provider and (value("MODEL") or value("API_KEY")):
             raise ModelError(
@@ -101,11 +112,13 @@ def settings_from_environment(environment: Mapping[str, str] | None = None) -> C
         base_url=base_url,
         model=value("MODEL"),
         api_key=value("API_KEY") or given.get(own_key_variable(chosen, base_url), "").strip(),
-        models={group: value(f"MODEL_{group.upper()}") for group in GROUPS if value(f"MODEL_{group.upper()}")},
+        models={group: value(f"MODEL_{group.upper()}") for group in (*GROUPS, TEXT) if value(f"MODEL_{group.upper()}")},
         proxy=value("PROXY"),
         ca_bundle=value("CA_BUNDLE"),
         spending_cap=_number(value("SPENDING_CAP"), "CODE_AS_ROOM_SPENDING_CAP", 0.0, 1e6, "US dollars") or 0.0,
     )
+    at_once = _number(value("AT_ONCE"), "CODE_AS_ROOM_AT_ONCE", 1.0, 4.0, "questions")
+    settings = replace(settings, at_once=int(at_once or chosen.at_once))
     seconds = _number(value("TIMEOUT"), "CODE_AS_ROOM_TIMEOUT", 1.0, 86_400.0, "seconds")
     return settings if seconds is None else replace(settings, read_timeout=seconds, total_timeout=seconds)
 
@@ -132,26 +145,39 @@ def make_client(settings: ClientSettings) -> ModelClient:
         from .builtin.client import BuiltinClient
 
         return BuiltinClient()
+    if settings.kind == "manual":
+        # Somebody has to copy and paste: the add-on makes this client itself, where it has a window.
+        raise ModelError(BY_HAND.message, BY_HAND.fix)
     if settings.kind == "recorded":
         from .recorded import RecordedClient
 
         if not settings.folder:
             raise ModelError("No folder with recorded answers is given.", "Choose one.")
         return RecordedClient(settings.folder)
-    main = service_client(settings)
+    # The service's limits are those of the account: its models share one pace.
+    pace = Pace(settings.at_once or usual_at_once(settings.base_url))
+    main = service_client(settings, pace=pace)
     others = {
-        group: service_client(settings, model)
+        group: service_client(settings, model, pace=pace)
         for group, model in settings.models.items()
         if model.strip() and model.strip() != main.model
     }
     return RoutingClient(main, others) if others else main
 
 
-def service_client(settings: ClientSettings, model: str = "", retries: RetryPolicy | None = None) -> HttpClient:
+def usual_at_once(base_url: str) -> int:
+    """Questions side by side: one on a computer of one's own, where the others would only wait and run out of time."""
+    return 1 if is_own_network(base_url) else 4
+
+
+def service_client(
+    settings: ClientSettings, model: str = "", retries: RetryPolicy | None = None, pace: Pace | None = None
+) -> HttpClient:
     """The client of one model of a service.
 
     Args:
         model: another model than the settings' main one; retries: how often to try, None for the usual.
+        pace: how many questions may be under way, shared with other clients of the service.
 
     Raises:
         ModelError: the settings are not complete or cannot be right.
@@ -161,7 +187,7 @@ def service_client(settings: ClientSettings, model: str = "", retries: RetryPoli
     limits = Limits(settings.connect_timeout, settings.read_timeout, settings.total_timeout)
     route = checked_route(settings.proxy, settings.ca_bundle)
     return _client_class(settings.kind)(
-        settings.base_url, model or settings.model, settings.api_key, limits, retries, route
+        settings.base_url, model or settings.model, settings.api_key, limits, retries, route, pace
     )
 
 

@@ -8,6 +8,8 @@ left as it is, so that validation names it and the model is asked again.
 
 from __future__ import annotations
 
+import functools
+import math
 import re
 from collections import Counter
 from collections.abc import Mapping
@@ -28,11 +30,17 @@ def repair_reply(data: Any, model: type[BaseModel]) -> tuple[Any, tuple[str, ...
     Returns:
         The corrected data (the input is not changed) and one sentence a kind of correction, with counts.
     """
-    schema = model.model_json_schema(mode="validation")
+    schema = _schema_of(model)
     mender = _Mender(schema.get("$defs", {}))
     root = mender.unwrap(data, mender.resolve(schema))
     mended = mender.mend(root, schema, "")
     return mended, mender.notes()
+
+
+@functools.lru_cache(maxsize=64)
+def _schema_of(model: type[BaseModel]) -> dict[str, Any]:
+    """The schema by which answers are read; only looked at, never changed."""
+    return model.model_json_schema(mode="validation")
 
 
 class _Mender:
@@ -124,6 +132,10 @@ class _Mender:
         return data
 
     def _mend_scalar(self, data: Any, kind: str, path: str) -> Any:
+        if kind in ("number", "integer") and isinstance(data, str) and _is_endless(data.rstrip(" °mdegrs")):
+            # Pydantic would read these words as numbers.
+            self._say("a number that is not finite was read as missing", path)
+            return None
         if kind in ("number", "integer") and isinstance(data, str):
             match = _NUMBER_TEXT.fullmatch(data)
             if match and len(data) < 60:
@@ -197,7 +209,9 @@ class _Mender:
                 self._say("null was read as the default", place)
                 return _MISSING
             return None
-        return self.mend(value, schema, place)
+        mended = self.mend(value, schema, place)
+        lost = mended is None and value is not None and not self._takes_null(schema) and "default" in schema
+        return _MISSING if lost else mended
 
     def _takes_null(self, schema: Mapping[str, Any]) -> bool:
         schema = self.resolve(schema)
@@ -221,6 +235,14 @@ class _Mender:
             else:
                 result[key] = value
         return result
+
+
+def _is_endless(text: str) -> bool:
+    """Whether a text is a number that is not finite: nan, infinity, 1e999."""
+    try:
+        return len(text) < 500 and not math.isfinite(float(text))
+    except ValueError:
+        return False
 
 
 def _bare(word: str) -> str:

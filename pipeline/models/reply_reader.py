@@ -45,6 +45,7 @@ class ReplyReader:
         self.done = False
         self.model = ""
         self.prompt_tokens = self.completion_tokens = 0
+        self.cached_tokens = self.written_tokens = 0
         self.cost: float | None = None
 
     def take(self, data: dict[str, Any]) -> bool:
@@ -54,8 +55,8 @@ class ReplyReader:
     def feed(self, piece: bytes) -> bool:
         """Take a piece of the body; True when the reply is complete and the rest need not be waited for."""
         if self._streamed is None:
-            self._head += piece
-            start = self._head.lstrip(b"\xef\xbb\xbf \t\r\n")
+            # What stands before it is dropped at once: a reply of spaces only would take the square of its length.
+            self._head = start = (self._head + piece).lstrip(b"\xef\xbb\xbf \t\r\n")
             if not start or (len(start) < 6 and any(sign.startswith(start) for sign in (b"data:", b"event:"))):
                 return False
             self._streamed = start.startswith(_EVENT_STARTS)
@@ -179,6 +180,8 @@ class ReplyReader:
             prompt_tokens=self.prompt_tokens,
             completion_tokens=self.completion_tokens,
             cost=self.cost,
+            cached_tokens=self.cached_tokens,
+            written_tokens=self.written_tokens,
         )
 
 

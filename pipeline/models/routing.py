@@ -16,7 +16,19 @@ GROUPS: dict[str, tuple[str, range]] = {
     "surfaces": ("Surfaces and light", range(8, 11)),
 }
 """Id of a group: its title and the numbers of its stages."""
+TEXT = "text"
+"""Id of what answers questions without pictures, of whatever stage: a model that needs no eyes."""
 _NUMBER = re.compile(r"s(\d+)(?:_|$)")
+
+
+def model_of(models: Mapping[str, str], main: str, stage: str, pictures: int = 1) -> str:
+    """The model that answers.
+
+    Args:
+        models: by group, "" or none for the main one; pictures: how many the question has.
+    """
+    blind = models.get(TEXT, "").strip() if not pictures else ""
+    return blind or models.get(group_of(stage), "").strip() or main.strip()
 
 
 def group_of(stage: str) -> str:
@@ -37,7 +49,8 @@ class RoutingClient:
         self.main = main
         self._groups = dict(groups)
         self.name = main.name
-        others = [f"{GROUPS[group][0]}: {client.describes}" for group, client in self._groups.items()]
+        titles = {**{group: title for group, (title, _) in GROUPS.items()}, TEXT: "Without pictures"}
+        others = [f"{titles[group]}: {client.describes}" for group, client in self._groups.items()]
         self.describes = "; ".join([main.describes, *others])
 
     def client_for(self, stage: str) -> ModelClient:
@@ -50,4 +63,5 @@ class RoutingClient:
 
     def answer(self, prompt: Prompt, cancel: threading.Event, progress: Callable[[str], None] | None = None) -> Reply:
         """As `ModelClient.answer`."""
-        return self.client_for(prompt.stage).answer(prompt, cancel, progress)
+        blind = self._groups.get(TEXT) if not prompt.images else None
+        return (blind or self.client_for(prompt.stage)).answer(prompt, cancel, progress)

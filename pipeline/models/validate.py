@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable, Iterator
 from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
@@ -16,12 +18,18 @@ _MOST_PROBLEMS = 15
 Location = tuple[int | str, ...]
 
 
-def validate_reply(text: str, model: type[_Reply], salvage: bool = False) -> tuple[_Reply, tuple[str, ...]]:
+Mend = Callable[[Any], tuple[Any, tuple[str, ...]]]
+
+
+def validate_reply(
+    text: str, model: type[_Reply], salvage: bool = False, mend: Mend | None = None
+) -> tuple[_Reply, tuple[str, ...]]:
     """Read a model's answer as `model`.
 
     Args:
         salvage: leave out list entries that stay invalid (at most a quarter of a list, never all of it) rather than
             refuse the whole answer; each one is reported.
+        mend: changes what was read before it is judged, and says what it changed.
 
     Returns:
         The reply and sentences on everything that was forgiven, corrected or left out.
@@ -30,22 +38,49 @@ def validate_reply(text: str, model: type[_Reply], salvage: bool = False) -> tup
         CutReplyError, ReplyError: the answer cannot be used; `problems` says why in words a model understands.
     """
     data, read_notes = read_json_noted(text)
+    if mend is not None:
+        data, changed = mend(data)
+        read_notes = (*read_notes, *changed)
     data, mend_notes = repair_reply(data, model)
     notes = (*read_notes, *mend_notes)
     try:
-        return model.model_validate(data), notes
+        return _finite(model.model_validate(data)), notes
     except ValidationError as error:
         failure = error
     if salvage:
         rest, dropped = _without_bad_entries(data, [detail["loc"] for detail in failure.errors(include_url=False)])
         if dropped:
             try:
-                return model.model_validate(rest), (*notes, *dropped)
+                return _finite(model.model_validate(rest)), (*notes, *dropped)
             except ValidationError:
                 pass
     problems = _problems(failure)
     more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
     raise ReplyError(f"The model's answer does not fit: {problems[0]}{more}.", "Run the stage again.", problems)
+
+
+def _finite(reply: _Reply) -> _Reply:
+    """The reply, once it is known that all of its numbers are finite.
+
+    Raises:
+        ReplyError: one is not; places where the repair does not look are the only ones where this can be.
+    """
+    place = next(_not_finite(reply.model_dump(), ()), None)
+    if place is not None:
+        problem = f"{_path(place, exact=True) or 'the answer'}: Input should be a finite number"
+        raise ReplyError(f"The model's answer does not fit: {problem}.", "Run the stage again.", (problem,))
+    return reply
+
+
+def _not_finite(value: Any, place: Location) -> Iterator[Location]:
+    if isinstance(value, float) and not math.isfinite(value):
+        yield place
+    elif isinstance(value, dict):
+        for key, item in value.items():
+            yield from _not_finite(item, (*place, str(key)))
+    elif isinstance(value, (list, tuple)):
+        for number, item in enumerate(value):
+            yield from _not_finite(item, (*place, number))
 
 
 def _problems(error: ValidationError) -> tuple[str, ...]:

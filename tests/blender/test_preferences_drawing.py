@@ -11,7 +11,7 @@ from typing import Any
 import bpy
 import code_as_room
 import pytest
-from code_as_room.operators import clients, connection
+from code_as_room.operators import clients, connection, model_prices
 from code_as_room.panels import preferences as panel
 from code_as_room.panels.preferences_draw import draw_preferences
 from code_as_room.pipeline.errors import ModelError
@@ -80,14 +80,19 @@ def test_every_provider_is_drawn_with_what_it_needs(provider: str, monkeypatch: 
     if chosen.key_variable:
         monkeypatch.delenv(chosen.key_variable, raising=False)
     text = drawn(Preferences(provider, show_models=True, show_network=True))
-    asks = chosen.kind not in ("builtin", "recorded")
+    asks = chosen.kind not in ("builtin", "recorded", "manual")
+    assert ("by_hand_folder" in text) is (chosen.kind == "manual")
     assert ("base_url" in text) is asks and ("code_as_room.test_connection" in text) is asks
     assert ("api_key" in text) is (chosen.key != "none")
     assert ("replies_folder" in text) is (chosen.kind == "recorded")
     if chosen.key == "needed":
         assert "There is no key yet" in text and "wm.url_open" in text
     if asks:
-        assert all(f"model_{group}" in text for group in clients.GROUPS) and "proxy" in text and "ca_bundle" in text
+        assert (
+            all(f"model_{group}" in text for group in (*clients.GROUPS, "text"))
+            and "proxy" in text
+            and "ca_bundle" in text
+        )
         on_the_internet = chosen.base_url.startswith("https")
         assert ("Each question sends the picture" in text) is on_the_internet
         assert ("online access is off" in text) is on_the_internet
@@ -107,8 +112,8 @@ def test_results_and_problems_are_shown(monkeypatch: pytest.MonkeyPatch) -> None
     report = ConnectionReport("bad", "key", "The key is wrong.", "Check it.", steps=steps)
     monkeypatch.setattr(connection, "_report", report)
     monkeypatch.setattr(connection, "_problem", ModelError("The list cannot be had.", "Type it."))
-    monkeypatch.setattr(connection, "_price_lines", ("The price of m is not known.",))
-    monkeypatch.setattr(connection, "_price_missing", ("m",))
+    monkeypatch.setattr(model_prices, "_lines", ("The price of m is not known.",))
+    monkeypatch.setattr(model_prices, "_missing", ("m",))
     text = drawn(Preferences("LMSTUDIO", spending_cap=1.0))
     assert "The key is wrong. Check it." in text and "Connection | Key" in text and "Pictures" not in text
     assert "The list cannot be had." in text and "code_as_room.set_price" in text and "nothing is sent" in text

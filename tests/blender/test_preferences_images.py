@@ -12,6 +12,7 @@ import code_as_room
 import pytest
 from code_as_room.operators import clients, consent, painters
 from code_as_room.panels import preferences_images as panel
+from code_as_room.panels.preferences_service import switch
 from code_as_room.pipeline.errors import ModelError
 from code_as_room.pipeline.models.image_base import ImageRequest
 from code_as_room.pipeline.models.image_registry import IMAGE_PRESETS, image_preset
@@ -91,7 +92,7 @@ def drawn(preferences: Any) -> str:
     layout: Any = Layout()
     region = SimpleNamespace(width=700)
     context = SimpleNamespace(scene=bpy.context.scene, region=region, preferences=bpy.context.preferences)
-    panel.draw_image_preferences(preferences, layout, context, "unencrypted")
+    panel.draw_image_preferences(preferences, layout, context)
     return " | ".join(layout.drawn)
 
 
@@ -111,10 +112,10 @@ def test_every_provider_is_drawn_with_what_it_needs(provider: str) -> None:
 
 def test_a_key_that_was_typed_for_one_service_never_stands_in_anothers_field() -> None:
     preferences = Preferences("OPENAI", image_api_key=KEY, image_model="a", image_price=0.04)
-    panel._switch(preferences, "OPENAI", "CUSTOM")
+    switch(preferences, panel.FIELDS, "OPENAI", "CUSTOM", image_preset("CUSTOM").base_url)
     assert (preferences.image_api_key, preferences.image_model, preferences.image_price) == ("", "", 0.0)
     assert preferences.image_base_url == image_preset("CUSTOM").base_url
-    panel._switch(preferences, "CUSTOM", "OPENAI")
+    switch(preferences, panel.FIELDS, "CUSTOM", "OPENAI", image_preset("OPENAI").base_url)
     assert (preferences.image_api_key, preferences.image_model, preferences.image_price) == (KEY, "a", 0.04)
 
 

@@ -136,7 +136,7 @@ def test_a_model_without_eyes_is_found(peer, wire):
     assert tried(settings_for(peer)).kind == "pictures"
 
 
-def test_a_model_without_eyes_may_do_stages_that_need_none(peer, wire):
+def test_a_model_without_eyes_may_answer_what_has_no_pictures(peer, wire):
     def script(received):
         if has_picture(received) and received.body["model"] == "blind":
             received.reply(400, error("no images"))
@@ -144,9 +144,11 @@ def test_a_model_without_eyes_may_do_stages_that_need_none(peer, wire):
             service(wire)(received)
 
     peer.script = script
-    report = tried(settings_for(peer, models={"modelling": "blind"}))
+    report = tried(settings_for(peer, models={"text": "blind"}))
     assert report.level == "good" and "2 models" in report.sentence
-    assert tried(settings_for(peer, models={"layout": "blind"})).kind == "pictures"
+    # Every group of stages shows pictures.
+    for group in ("seeing", "layout", "modelling", "surfaces"):
+        assert tried(settings_for(peer, models={group: "blind"})).kind == "pictures"
 
 
 def test_what_ollama_says_of_a_model_is_believed(peer):

@@ -1,15 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The way to a service: certificates are always verified, proxies are used as set, and every fault of them is named."""
 
-import base64
-import contextlib
 import os
-import socket
-import socketserver
-import ssl
 import threading
 import time
-from pathlib import Path
 
 import pytest
 from code_as_room.pipeline.errors import Cancelled, ModelError
@@ -17,10 +11,9 @@ from code_as_room.pipeline.models.faults import ServiceError
 from code_as_room.pipeline.models.limits import Limits, Route, checked_route
 from code_as_room.pipeline.models.openai_style import OpenAIStyleClient
 from code_as_room.pipeline.models.retry import RetryPolicy
+from fault_server import AUTHORITY, free_port, start_secure, start_tunnel, stop
 
 KEY = "sk-test-0123456789abcdef"
-CERTIFICATES = Path(__file__).with_name("tls")
-AUTHORITY = str(CERTIFICATES / "authority.pem")
 SOON = 2.0
 
 pytestmark = pytest.mark.usefixtures("no_threads_left")
@@ -47,71 +40,27 @@ def failure(client, prompt):
     return caught.value
 
 
-class Server(socketserver.ThreadingTCPServer):
-    allow_reuse_address = True
-    daemon_threads = True
-
-    def handle_error(self, request, client_address):
-        """A peer that hangs up is the point of many tests."""
-
-
-def serve(handle):
-    """A server whose connections are handled by a function; returns it and its port."""
-
-    class Handler(socketserver.BaseRequestHandler):
-        def handle(self):
-            with contextlib.suppress(OSError, ValueError):
-                handle(self.request)
-
-    server = Server(("127.0.0.1", 0), Handler)
-    threading.Thread(target=server.serve_forever, args=(0.05,), daemon=True).start()
-    return server, server.server_address[1]
-
-
-def read_head(connection):
-    """The lines of a request's head, and what came behind it."""
-    data = b""
-    while b"\r\n\r\n" not in data:
-        piece = connection.recv(4096)
-        if not piece:
-            return [], b""
-        data += piece
-    head, _, rest = data.partition(b"\r\n\r\n")
-    return head.decode().split("\r\n"), rest
-
-
 @pytest.fixture
 def secure(wire):
     """Starts TLS services with one of the certificates; they note each request's first line and headers."""
     servers = []
 
     def start(certificate="server", hang=None):
-        context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
-        context.load_cert_chain(CERTIFICATES / f"{certificate}.pem")
-        received = []
+        def answer(connection):
+            if hang is not None:
+                hang.wait(10)
+                return
+            body = wire.event("{}") + wire.event(None, "stop") + wire.done
+            head = "HTTP/1.1 200 OK\r\nContent-Type: text/event-stream\r\nConnection: close\r\n\r\n"
+            connection.sendall(head.encode() + body)
 
-        def handle(raw):
-            with context.wrap_socket(raw, server_side=True) as connection:
-                lines, rest = read_head(connection)
-                received.append(lines)
-                wanted = next(int(line[16:]) for line in lines if line.lower().startswith("content-length: "))
-                while len(rest) < wanted:
-                    rest += connection.recv(65536)
-                if hang is not None:
-                    hang.wait(10)
-                    return
-                body = wire.event("{}") + wire.event(None, "stop") + wire.done
-                head = "HTTP/1.1 200 OK\r\nContent-Type: text/event-stream\r\nConnection: close\r\n\r\n"
-                connection.sendall(head.encode() + body)
-
-        server, port = serve(handle)
+        server, port, received = start_secure(answer, certificate)
         servers.append(server)
         return port, received
 
     yield start
     for server in servers:
-        server.shutdown()
-        server.server_close()
+        stop(server)
 
 
 @pytest.fixture
@@ -120,44 +69,19 @@ def tunnel():
     servers = []
 
     def start(port, password="", refuse="", hang=None):
-        asked = []
-
-        def handle(connection):
-            lines, _ = read_head(connection)
-            asked.append(lines)
-            given = base64.b64encode(f"user:{password}".encode()).decode()
+        def answer(connection):
             if hang is not None:
                 hang.wait(10)
-            elif refuse:
-                connection.sendall(f"HTTP/1.1 {refuse}\r\nConnection: close\r\n\r\n".encode())
-            elif password and f"Proxy-Authorization: Basic {given}" not in lines:
-                connection.sendall(b"HTTP/1.1 407 Proxy Authentication Required\r\nConnection: close\r\n\r\n")
             else:
-                with socket.create_connection(("127.0.0.1", port)) as far:
-                    connection.sendall(b"HTTP/1.1 200 Connection established\r\n\r\n")
-                    back = threading.Thread(target=pump, args=(far, connection), daemon=True)
-                    back.start()
-                    pump(connection, far)
-                    back.join()
+                connection.sendall(f"HTTP/1.1 {refuse}\r\nConnection: close\r\n\r\n".encode())
 
-        server, own = serve(handle)
+        server, own, asked = start_tunnel(port, password, answer if refuse or hang is not None else None)
         servers.append(server)
         return own, asked
 
     yield start
     for server in servers:
-        server.shutdown()
-        server.server_close()
-
-
-def pump(source, target):
-    """Pass on everything until one side is closed."""
-    with contextlib.suppress(OSError):
-        while piece := source.recv(65536):
-            target.sendall(piece)
-    for end in (source, target):
-        with contextlib.suppress(OSError):
-            end.shutdown(socket.SHUT_RDWR)
+        stop(server)
 
 
 # Certificates ---------------------------------------------------------------------------------------------------
@@ -265,9 +189,7 @@ def test_a_proxy_that_refuses_is_named(tunnel, a_prompt, options, words):
 
 
 def test_a_proxy_that_is_not_there_is_not_taken_for_the_service(a_prompt, monkeypatch):
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
+    port = free_port()
     error = failure(make("https://model.invalid/v1", f"http://127.0.0.1:{port}"), a_prompt)
     assert error.kind == "proxy" and "proxy of the preferences cannot be reached: nothing answers" in str(error)
     monkeypatch.setenv("HTTPS_PROXY", f"http://user:secretword@127.0.0.1:{port}")

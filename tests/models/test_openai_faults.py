@@ -3,8 +3,6 @@
 
 import json
 import random
-import socket
-import struct
 import threading
 import traceback
 
@@ -13,6 +11,7 @@ from code_as_room.pipeline.errors import ModelError, ReplyError
 from code_as_room.pipeline.models.exchange import Limits
 from code_as_room.pipeline.models.openai_style import OpenAIStyleClient
 from code_as_room.pipeline.models.retry import RetryPolicy
+from fault_server import free_port
 
 KEY = "sk-test-0123456789abcdef"
 ONCE = RetryPolicy(tries=1)
@@ -22,12 +21,6 @@ pytestmark = pytest.mark.usefixtures("no_threads_left")
 
 def make(url, limits=None, retries=ONCE):
     return OpenAIStyleClient(url, "m", KEY, limits or Limits(total=20.0), retries)
-
-
-def reset(received):
-    """Close with a reset rather than an orderly end."""
-    received.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
-    received.socket.close()
 
 
 def failure(client, prompt):
@@ -79,7 +72,7 @@ def test_a_reset_at_any_byte_is_an_error_or_a_whole_reply(peer, a_prompt, wire, 
         def script(received, end=end):
             received.send(whole[:end])
             if end % 2:
-                reset(received)
+                received.reset()
 
         peer.script = script
         try:
@@ -195,10 +188,7 @@ def test_a_dripping_reply_ends_at_the_total_limit(peer, a_prompt, wire):
 def test_a_server_that_is_not_there_is_named(a_prompt, monkeypatch):
     for name in ("http_proxy", "HTTP_PROXY", "all_proxy", "ALL_PROXY"):
         monkeypatch.delenv(name, raising=False)
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
-    error = failure(make(f"http://127.0.0.1:{port}/v1"), a_prompt)
+    error = failure(make(f"http://127.0.0.1:{free_port()}/v1"), a_prompt)
     assert error.kind == "refused" and "nothing answers there" in str(error)
     error = failure(make("http://no-such-host.invalid/v1"), a_prompt)
     assert error.kind == "name" and "name cannot be found" in str(error)

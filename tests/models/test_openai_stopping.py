@@ -13,6 +13,7 @@ from code_as_room.pipeline.errors import Cancelled, ModelError
 from code_as_room.pipeline.models.exchange import Limits
 from code_as_room.pipeline.models.openai_style import OpenAIStyleClient
 from code_as_room.pipeline.models.retry import RetryPolicy
+from fault_server import deaf_port
 
 SOON = 2.0
 """Generous bound for what must happen within a second."""
@@ -45,39 +46,24 @@ def stopped_after(client, prompt, seconds):
 
 
 @pytest.fixture
-def deaf_port():
-    """A port where connecting hangs, as behind a firewall: a listener whose queue is full."""
-    with socket.socket() as listener:
-        listener.bind(("127.0.0.1", 0))
-        listener.listen(0)
-        port = listener.getsockname()[1]
-        fillers = [socket.socket() for _ in range(8)]
-        for filler in fillers:
-            filler.setblocking(False)
-            filler.connect_ex(("127.0.0.1", port))
-        with socket.socket() as probe:
-            probe.settimeout(0.3)
-            try:
-                probe.connect(("127.0.0.1", port))
-            except TimeoutError:
-                yield port
-            else:
-                pytest.skip("this system takes connections beyond the queue")
-            finally:
-                for filler in fillers:
-                    filler.close()
+def deaf():
+    """A port where connecting hangs."""
+    with deaf_port() as port:
+        if port is None:
+            pytest.skip("this system takes connections beyond the queue")
+        yield port
 
 
-def test_it_stops_while_connecting(deaf_port, a_prompt, wire):
-    assert stopped_after(make(f"http://127.0.0.1:{deaf_port}/v1"), a_prompt, 0.2) < SOON
+def test_it_stops_while_connecting(deaf, a_prompt, wire):
+    assert stopped_after(make(f"http://127.0.0.1:{deaf}/v1"), a_prompt, 0.2) < SOON
     end = time.monotonic() + 3
     while wire.threads() and time.monotonic() < end:
         time.sleep(0.02)
     assert wire.threads() == 0
 
 
-def test_connecting_ends_at_its_limit(deaf_port, a_prompt):
-    client = make(f"http://127.0.0.1:{deaf_port}/v1", Limits(connect=0.3))
+def test_connecting_ends_at_its_limit(deaf, a_prompt):
+    client = make(f"http://127.0.0.1:{deaf}/v1", Limits(connect=0.3))
     with pytest.raises(ModelError, match="within 0.3 s"):
         client.answer(a_prompt, threading.Event())
 
