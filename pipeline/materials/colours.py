@@ -5,19 +5,39 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from ..artifacts.objects import MeasuredColour, ObjectDescription
+from ..objects.lying_on import COVER
 from ..objects.tinting import FIXED, calm
 from ..program.prelude.palette import ROLE_COLOURS
+from ..program.prelude.shape import Shape
 from .difference import difference, lab_of
-from .parts import Cell
+from .parts import Cell, cells_of
 
 SURE = 0.18
 """An object of which less is seen keeps the colours of its program."""
 _LEAST = 0.03
+_SHOWN = 0.02
+"""Share of an object that has to be seen between what lies on it."""
 _NEAR = 14.0
 """CIEDE2000 within which a program's own colour and a measured one are taken for the same thing."""
 _MOST = 4
+
+
+def uncovered(cells: Sequence[Cell], shapes: Sequence[Shape], covers: Sequence[Shape]) -> list[Cell]:
+    """The cells with their shares of what is seen between the things that lie on an object: a made bed shows no mattress.
+
+    Args:
+        covers: boxes of what lies on it, in its own frame (`objects/lying_on.py`).
+    """
+    if not covers:
+        return list(cells)
+    shown = {(c.part, c.material): c.share for c in cells_of([*shapes, *covers]) if c.material != COVER}
+    total = sum(shown.values())
+    if total < _SHOWN:
+        return list(cells)
+    return [replace(c, share=round(shown.get((c.part, c.material), 0.0) / total, 4)) for c in cells]
 
 
 def part_colours(cells: Sequence[Cell], described: ObjectDescription) -> dict[str, str]:

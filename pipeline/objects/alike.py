@@ -9,15 +9,19 @@ from collections.abc import Mapping, Sequence
 from ..artifacts.layout import ProxyLine
 from ..artifacts.objects import Descriptions, ObjectDescription
 from .colours import colour_distance
+from .twins import other_colours
 
 _SIZE = math.log(1.12)
 _COLOUR = 0.13
+_PLAIN = 0.8
+"""Share of its main colour from which a thing is of one colour; others may be patterned."""
 
 
 def alike(proxies: Sequence[ProxyLine], descriptions: Descriptions) -> dict[str, str]:
     """The id of each object -> the id of the first one that is the same thing, which may be itself.
 
-    Same category and placement, sizes within 12 %, and colours that look the same where they are known.
+    Same category and placement, sizes within 12 %, and colours that look the same where they are known. Things that are
+    mainly of one colour each may differ in it; `twins.py` gives each its own.
     """
     known = {d.id: d for d in descriptions.objects}
     empty = ObjectDescription(id="")
@@ -43,7 +47,9 @@ def _same_look(a: ObjectDescription, b: ObjectDescription) -> bool:
         return False
     if not a.measured or not b.measured:
         return True
-    return colour_distance(a.measured[0].code, b.measured[0].code) < _COLOUR
+    if colour_distance(a.measured[0].code, b.measured[0].code) < _COLOUR:
+        return True
+    return other_colours(a, b) and min(a.measured[0].share, b.measured[0].share) > _PLAIN
 
 
 def _words(text: str) -> list[str]:

@@ -7,28 +7,35 @@ colour is the trimmed mean of its own cluster's middle brightness.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from ..artifacts.camera import CameraModel
+from ..artifacts.common import ImageBox
 from ..artifacts.layout import Layout, ProxyLine
 from ..artifacts.objects import MeasuredColour
 from ..geometry.camera import project
 from ..geometry.footprint import box_corners
 from ..picture import ReferencePicture
+from .outlines import Floats as Floats
+from .outlines import area, fitted, grown, not_around, some, wider
+from .outlines import convex_hull as convex_hull
 
-Floats = NDArray[np.float64]
 LONG_SIDE = 800
 """Pixels of the copy of the picture that is measured."""
 _LEAST_PIXELS = 24
 _MOST_PIXELS = 4000
 _CLUSTERS = 3
 _INSET = 0.9
-_SURROUNDINGS = 0.055
-"""Perceived distance within which a pixel has the colour of what is round the object."""
+_UNSURE = 4.0
+"""Pixels of the measured copy by which the place of an object is usually wrong."""
+_LEAK = 2.0
+"""Pixels round what lies on an object that may show either."""
+_OWN = 0.35
+"""Least share of an object that has colours of its own; of fewer pixels they are a foot or a shadow."""
 _WHITE = 0.8
 """Linear brightness of what is white in a picture that is lit as usual."""
 
@@ -38,59 +45,83 @@ class ColourMeter:
 
     Args:
         layout: where everything stands; camera: through which the picture was seen.
+        boxes: where the picture shows objects, by id, as far as that was looked up.
     """
 
-    def __init__(self, picture: ReferencePicture, camera: CameraModel, layout: Layout) -> None:
+    def __init__(
+        self,
+        picture: ReferencePicture,
+        camera: CameraModel,
+        layout: Layout,
+        boxes: Mapping[str, ImageBox] | None = None,
+    ) -> None:
         self._pixels = _linear(_small(picture.pixels()))
         self._camera = camera
         self._layout = layout
+        self._boxes = boxes or {}
         height, width = self._pixels.shape[:2]
         self._scale = np.array((width, height)) / 1000.0
         self._size = (width, height)
         inside = self._room()
         self.gains = light_gains(self._pixels[inside] if inside.any() else self._pixels.reshape(-1, 3))
-        self._outlines = {p.id: self._outline(p, 1.0) for p in layout.proxies}
+        self._outlines = {p.id: self._outline(p) for p in layout.proxies}
 
     def measure(self, proxy: ProxyLine) -> tuple[list[MeasuredColour], float]:
         """Up to three colours of an object, largest share first, and the share of its outline that is seen."""
-        outline = self._outline(proxy, _INSET)
+        outline = self._outlines.get(proxy.id)
         if outline is None:
             return [], 0.0
-        inside = self._mask([outline])
-        whole = int(inside.sum())
-        if not whole:
+        whole = self._mask([grown(outline, _INSET)])
+        if not whole.any():
             return [], 0.0
-        above = _ancestors(proxy, self._layout)
-        others = [p for p in self._layout.proxies if p.id not in above and _hides(p, proxy, self._layout)]
-        hiding = [o for p in others if (o := self._outlines[p.id]) is not None]
-        hidden = self._mask(hiding) if hiding else np.zeros_like(inside)
-        found = self._own(proxy, inside & ~hidden, hidden)
-        inside &= ~hidden
+        hidden = self._hidden(proxy)
+        seen = float((whole & ~hidden).sum() / whole.sum())
+        found = self._own(outline, whole, hidden)
         if len(found) < _LEAST_PIXELS:
-            return [], len(found) / whole
+            return [], seen
         if len(found) > _MOST_PIXELS:
             found = found[np.linspace(0, len(found) - 1, _MOST_PIXELS).astype(int)]
-        return dominant(found * self.gains), len(found) / whole if whole <= _MOST_PIXELS else float(
-            inside.sum()
-        ) / whole
+        return dominant(found * self.gains), seen
 
-    def _own(self, proxy: ProxyLine, inside: NDArray[np.bool_], hidden: NDArray[np.bool_]) -> Floats:
-        """The pixels inside an outline that are not its surroundings': what is not a box lets them show."""
+    def _hidden(self, proxy: ProxyLine) -> NDArray[np.bool_]:
+        """The pixels of what may stand before an object or lies on it, with the rims of what lies on it."""
+        above = _ancestors(proxy, self._layout)
+        outlines: list[Floats] = []
+        for other in self._layout.proxies:
+            shape = self._outlines[other.id]
+            if shape is None or other.id in above or not _hides(other, proxy, self._layout):
+                continue
+            on_it = other.parent == proxy.id
+            outlines.append(wider(shape, _LEAK) if on_it else shape)
+            box = self._boxes.get(other.id)
+            if on_it and box is not None:
+                outlines.append(wider(self._corners(box), _LEAK / 2))
+        return self._mask(outlines) if outlines else np.zeros(self._pixels.shape[:2], dtype=bool)
+
+    def _own(self, outline: Floats, whole: NDArray[np.bool_], hidden: NDArray[np.bool_]) -> Floats:
+        """The pixels inside an outline that are an object's own: not at its rim, and not in its surroundings' colours.
+
+        The place of a small thing is less sure than it is wide, so of small ones only the inner part counts.
+        """
+        across = float(np.sqrt(max(area(outline), 1.0)))
+        for inset in (np.clip(1.0 - 2 * _UNSURE / across, 0.55, _INSET), _INSET):
+            inside = self._mask([grown(outline, float(inset))]) & ~hidden
+            if inside.sum() >= 2 * _LEAST_PIXELS:
+                break
         found = self._pixels[inside]
-        outer, rim = self._outline(proxy, 1.25), self._outlines[proxy.id]
-        if outer is None or rim is None or len(found) < _LEAST_PIXELS or proxy.size[2] < 0.05:
+        ring = self._mask([wider(grown(outline, 1.15), 4.0)]) & ~self._mask([wider(outline, 1.0)]) & ~hidden
+        if min(len(found), int(ring.sum())) < _LEAST_PIXELS:
             return found
-        ring = self._pixels[self._mask([outer]) & ~self._mask([rim]) & ~hidden]
-        if len(ring) < _LEAST_PIXELS:
-            return found
-        around = _perceived(ring[np.linspace(0, len(ring) - 1, min(len(ring), 400)).astype(int)])
-        typical = np.array(
-            [around[np.argsort(around[:, 0])[int(q * (len(around) - 1))]] for q in (0.1, 0.3, 0.5, 0.7, 0.9)]
-        )
-        apart = np.sqrt(((_perceived(found)[:, None] - typical[None]) ** 2).sum(axis=2)).min(axis=1)
-        own = found[apart > _SURROUNDINGS]
+        own = found[not_around(_perceived(found), _perceived(some(self._pixels[ring], 1500)))]
         # An object of its surroundings' own colour is all of it.
-        return own if len(own) > 0.3 * len(found) else found
+        return own if len(own) > _OWN * len(found) else found
+
+    def _corners(self, box: ImageBox) -> Floats:
+        """A box of the picture as an outline in pixels of the measured copy."""
+        x = (box.x_min, box.x_max, box.x_max, box.x_min)
+        y = (box.y_min, box.y_min, box.y_max, box.y_max)
+        corners: Floats = np.stack([x, y], axis=1) * self._scale
+        return corners
 
     def _room(self) -> NDArray[np.bool_]:
         """The pixels of the floor and the walls' insides, without what is drawn round a room."""
@@ -101,14 +132,16 @@ class ColourMeter:
         hull = convex_hull(points * self._scale) if len(points) > 2 else np.zeros((0, 2))
         return self._mask([hull]) if len(hull) >= 3 else np.zeros(self._pixels.shape[:2], dtype=bool)
 
-    def _outline(self, proxy: ProxyLine, inset: float) -> Floats | None:
-        """The picture outline of a proxy in pixels of the measured copy: of its top for what is seen from above."""
-        size = (proxy.size[0] * inset, proxy.size[1] * inset, proxy.size[2])
-        points = project(self._camera, box_corners(proxy.centre, size, proxy.yaw))
+    def _outline(self, proxy: ProxyLine) -> Floats | None:
+        """Where the picture shows a proxy, in pixels of the measured copy: its own outline, moved to where it was found."""
+        points = project(self._camera, box_corners(proxy.centre, proxy.size, proxy.yaw))
         if not np.isfinite(points).all():
             return None
         hull = convex_hull(points * self._scale)
-        return hull if len(hull) >= 3 else None
+        if len(hull) < 3:
+            return None
+        box = self._boxes.get(proxy.id)
+        return hull if box is None else fitted(hull, self._corners(box))
 
     def _mask(self, outlines: Sequence[Floats]) -> NDArray[np.bool_]:
         image = Image.new("1", self._size)
@@ -250,23 +283,3 @@ def _small(pixels: NDArray[np.uint8]) -> NDArray[np.uint8]:
     image = Image.fromarray(pixels)
     image.thumbnail((LONG_SIDE, LONG_SIDE))
     return np.array(image)
-
-
-def convex_hull(points: Floats) -> Floats:
-    """The convex hull of points (N, 2), counter-clockwise."""
-    ordered = sorted({(float(x), float(y)) for x, y in points})
-    if len(ordered) < 3:
-        return np.array(ordered)
-
-    def chain(items: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
-        found: list[tuple[float, float]] = []
-        for p in items:
-            while len(found) > 1:
-                (ax, ay), (bx, by) = found[-2:]
-                if (bx - ax) * (p[1] - ay) - (by - ay) * (p[0] - ax) > 0:
-                    break
-                found.pop()
-            found.append(p)
-        return found[:-1]
-
-    return np.array(chain(ordered) + chain(ordered[::-1]))

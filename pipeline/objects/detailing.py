@@ -22,8 +22,11 @@ from ..program.limits import FINISHED_ROOM_LIMITS
 from ..program.lines import parse_layout
 from .alike import alike, groups
 from .cloths import furnish_line
-from .library import PLAIN, Made, asked_piece, best_piece
+from .library import PLAIN, Made, asked_piece, best_piece, def_of, shapes_of, tinted
+from .lying_on import covers_of
 from .text import Modelling, compose, function_name, read_modelling
+from .tinting import seen_from_above, tints_for
+from .twins import codes_of, other_colours, twin_tints
 from .written import Written
 
 
@@ -36,7 +39,7 @@ class Detailing:
         todo: the objects that are modelled now; of those that are alike only the first.
         members: first of each group -> all of it.
         library: id of the first -> its library piece. written: the same for programs of the model.
-        names: id of the first -> name of its def.
+        names: id of the first -> name of its def; the same for those that may be of another colour than their first.
         standing: what the room text of before says; kept: ids that stay as they are in it.
         own: what the artist says.
     """
@@ -85,6 +88,9 @@ class Detailing:
         names: dict[str, str] = {}
         for proxy in firsts:
             names[proxy.id] = function_name(proxy.id, {*taken, *names.values()})
+        for first, group in members.items():
+            for other in (i for i in group if other_colours(descriptions.of(first), descriptions.of(i))):
+                names[other] = function_name(other, {*taken, *names.values()})
         return Detailing(layout, descriptions, style, firsts, members, names, former, kept, own, before)
 
     def described(self, identifier: str) -> ObjectDescription:
@@ -95,7 +101,8 @@ class Detailing:
         """Give every object its library piece; nothing is asked."""
         for proxy in self.todo:
             if proxy.id not in self.library:
-                self.library[proxy.id] = best_piece(proxy, self.described(proxy.id), self._carried(proxy.id))
+                covers = covers_of(proxy, self.layout)
+                self.library[proxy.id] = best_piece(proxy, self.described(proxy.id), self._carried(proxy.id), covers)
 
     def take_pieces(self, replies: list[PieceReply]) -> None:
         """Take over what a model chose from the library, where that can be made."""
@@ -104,7 +111,7 @@ class Detailing:
             reply = wanted.get(proxy.id)
             if reply is None or not reply.piece.strip():
                 continue
-            made = asked_piece(proxy, self.described(proxy.id), reply)
+            made = asked_piece(proxy, self.described(proxy.id), reply, covers_of(proxy, self.layout))
             if made is None:
                 self.notes[proxy.id] = f"The model chose {reply.piece.strip()[:60]!r}, which the library does not have."
             else:
@@ -137,13 +144,31 @@ class Detailing:
             else:
                 continue
             for member in self.members[proxy.id]:
-                statements[member] = furnish_line(self.layout.proxy(member) or proxy, name)
+                like = self.layout.proxy(member) or proxy
+                twin = self._in_own_colours(proxy, like)
+                if twin:
+                    defs[self.names[member]] = twin
+                statements[member] = furnish_line(like, self.names[member] if twin else name)
         others = [o for snippet in self.own.functions.values() for o in _read(snippet).others]
         others += [o for w in self.written.values() for o in _read(w.code).others]
         if self.kept:
             others += self.standing.others
         ordered = {p.id: statements[p.id] for p in self.layout.proxies if p.id in statements}
         return compose(self.layout, defs, ordered, list(dict.fromkeys(others)))
+
+    def _in_own_colours(self, first: ProxyLine, proxy: ProxyLine) -> str:
+        """The def of an object that is made as the first of its kind in other colours, "" where they are the same."""
+        if proxy.id == first.id or proxy.id not in self.names:
+            return ""
+        own, of_kind = self.described(proxy.id), self.described(first.id)
+        if first.id in self.written:
+            shapes, tints = list(self.written[first.id].shapes), {}
+        else:
+            made = self.library[first.id]
+            shapes, tints = shapes_of(made.choice, first.size), dict(made.tints)
+        tints = twin_tints(codes_of(shapes, tints), of_kind, own) or tints_for(seen_from_above(shapes), own)
+        title = proxy.label or proxy.category.replace("_", " ")
+        return def_of(self.names[proxy.id], tinted(f"{self.names[first.id]}(size)", tints), title) if tints else ""
 
     def sound_text(self) -> str:
         """As `text`, after everything that cannot be evaluated in the whole room gave way to the library, then to boxes."""
@@ -190,7 +215,7 @@ class Detailing:
 
     def _program(self, identifier: str, first: str) -> ObjectProgram:
         like = first if first != identifier else ""
-        name, note = self.names.get(first, ""), self.notes.get(first, "")
+        name, note = self._def_name(identifier, first), self.notes.get(first, "")
         if first in self.written:
             return ObjectProgram(id=identifier, function=name, source="program", like=like, note=note)
         made = self.library.get(first)
@@ -206,6 +231,13 @@ class Detailing:
             parameters=parameters,
             note=note or made.note,
         )
+
+    def _def_name(self, identifier: str, first: str) -> str:
+        line, of_kind = self.layout.proxy(identifier), self.layout.proxy(first)
+        modelled = first in self.written or first in self.library
+        if modelled and line is not None and of_kind is not None and self._in_own_colours(of_kind, line):
+            return self.names[identifier]
+        return self.names.get(first, "")
 
     def _fallbacks(self) -> list[Finding]:
         found = [Finding(about=i, message=note) for i, note in self.notes.items() if note]

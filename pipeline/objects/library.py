@@ -37,40 +37,55 @@ class Made:
     @property
     def body(self) -> str:
         """The call of the piece, tinted."""
-        call = self.choice.call()
-        if not self.tints:
-            return call
-        colours = ", ".join(f"{literal(role)}: {literal(colour)}" for role, colour in self.tints.items())
-        return f"tint({call}, {{{colours}}})"
+        return tinted(self.choice.call(), self.tints)
 
     def text(self, name: str, title: str = "") -> str:
         """The def of an object."""
-        words = title.replace("\\", " ").replace('"', "'").strip().rstrip(".")
-        doc = f'    """{words[:90]}."""\n' if words else ""
-        return f"def {name}(size):\n{doc}    return {self.body}"
+        return def_of(name, self.body, title)
 
 
-def best_piece(proxy: ProxyLine, described: ObjectDescription, carried: Sequence[str] = ()) -> Made:
+def tinted(call: str, tints: Mapping[str, str]) -> str:
+    """An expression that makes shapes, with colours for their roles."""
+    if not tints:
+        return call
+    colours = ", ".join(f"{literal(role)}: {literal(colour)}" for role, colour in tints.items())
+    return f"tint({call}, {{{colours}}})"
+
+
+def def_of(name: str, body: str, title: str = "") -> str:
+    """The def of an object that returns an expression; its title is the docstring."""
+    words = title.replace("\\", " ").replace('"', "'").strip().rstrip(".")
+    doc = f'    """{words[:90]}."""\n' if words else ""
+    return f"def {name}(size):\n{doc}    return {body}"
+
+
+def best_piece(
+    proxy: ProxyLine, described: ObjectDescription, carried: Sequence[str] = (), covers: Sequence[Shape] = ()
+) -> Made:
     """The library piece that comes nearest to an object, in its measured colours.
 
     A piece that cannot be made in this size gives way to the next; a plain block is what is left in the end.
 
     Args:
-        carried: categories of what stands or lies on it as an object of its own.
+        carried: categories of what stands or lies on it as an object of its own. covers: that as boxes in its frame.
     """
     family = category_family(proxy.category)
     note = ""
     for choice in candidates(proxy, described.words, family, carried)[:3]:
         shapes = shapes_of(choice, proxy.size)
         if shapes:
-            return Made(choice, tints_for(seen_from_above(shapes), described), note)
+            return Made(choice, tints_for(seen_from_above([*shapes, *covers]), described), note)
         note = f"The library's {choice.piece.name} cannot be made in this size."
     choice = Choice(catalogue.pieces()[PLAIN], 0.0, {"form": "round"} if proxy.shape == "round" else {})
     shapes = shapes_of(choice, proxy.size)
-    return Made(choice, tints_for(seen_from_above(shapes), described), note or "The library has no such thing.")
+    return Made(
+        choice, tints_for(seen_from_above([*shapes, *covers]), described), note or "The library has no such thing."
+    )
 
 
-def asked_piece(proxy: ProxyLine, described: ObjectDescription, reply: PieceReply) -> Made | None:
+def asked_piece(
+    proxy: ProxyLine, described: ObjectDescription, reply: PieceReply, covers: Sequence[Shape] = ()
+) -> Made | None:
     """What a model chose from the library; None when it is not there or cannot be made. Unusable parameters are left out."""
     piece = catalogue.pieces().get(reply.piece.strip())
     if piece is None:
@@ -82,7 +97,7 @@ def asked_piece(proxy: ProxyLine, described: ObjectDescription, reply: PieceRepl
         choice = Choice(piece, 1.0, parameters)
         shapes = shapes_of(choice, proxy.size)
         if shapes:
-            seen = seen_from_above(shapes)
+            seen = seen_from_above([*shapes, *covers])
             said = {c.role: f"#{code}" for c in reply.colours if (code := clean_code(c.colour)) and c.role in seen}
             tints = {**said, **tints_for(seen, described)}
             if parameters is not given:

@@ -17,6 +17,8 @@ from ..program.functions import GENERATOR_TAKERS
 from ..program.limits import DEFAULT_LIMITS
 from ..program.parse_safe import parse
 from ..program.prelude import registry
+from .idiom_names import with_own_names, without_stars
+from .idioms import Idioms
 from .written import program_of
 
 _MODULES = frozenset({"math", "np", "numpy"})
@@ -52,6 +54,10 @@ def mended(source: str) -> str | None:
     """
     tree = parse(program_of(source), DEFAULT_LIMITS)
     before = ast.dump(tree)
+    with_own_names(tree)
+    tree = ast.fix_missing_locations(Idioms(tree).visit(tree))
+    without_stars(tree)
+    tree = _apart(tree)
     made = ast.fix_missing_locations(_Mender(_bound(tree)).visit(tree))
     for node in ast.walk(made):
         if isinstance(node, ast.FunctionDef):
@@ -60,6 +66,14 @@ def mended(source: str) -> str | None:
         return None
     try:
         return ast.unparse(made)
+    except (RecursionError, ValueError):
+        raise ProgramError("the program is nested too deeply") from None
+
+
+def _apart(tree: ast.Module) -> ast.Module:
+    """The tree with no node in it twice."""
+    try:
+        return parse(ast.unparse(ast.fix_missing_locations(tree)), DEFAULT_LIMITS)
     except (RecursionError, ValueError):
         raise ProgramError("the program is nested too deeply") from None
 
@@ -94,9 +108,10 @@ class _Mender(ast.NodeTransformer):
         given = node.args
         for argument in [*given.posonlyargs, *given.args, *given.kwonlyargs]:
             argument.annotation = None
-        if not given.vararg and not given.kwarg and all(d is not None for d in given.kw_defaults):
+        if not given.vararg and not given.kwarg:
             given.args += given.kwonlyargs
-            given.defaults += [default for default in given.kw_defaults if default is not None]
+            ordered = given.defaults or any(given.kw_defaults)
+            given.defaults += [default or ast.Constant(None) for default in given.kw_defaults if default or ordered]
             given.kwonlyargs, given.kw_defaults = [], []
             given.args, given.posonlyargs = [*given.posonlyargs, *given.args], []
         return self.generic_visit(node)

@@ -7,6 +7,7 @@ picture. Large goes to large, and a colour rather to a role that is usually like
 
 from __future__ import annotations
 
+import functools
 import itertools
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -29,15 +30,15 @@ _SURE = 0.18
 
 def seen_from_above(shapes: Sequence[Shape]) -> dict[str, float]:
     """The share of each material role in what a camera above sees of the shapes; roles without their own colours."""
-    points, roles = _top_samples(shapes)
-    if not len(points):
+    (x, y, height), roles = _top_samples(shapes)
+    if not len(roles):
         return {}
-    low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
-    cells = np.clip(((points[:, :2] - low) / np.maximum(high - low, 1e-6) * _CELLS).astype(int), 0, _CELLS - 1)
-    flat = cells[:, 0] * _CELLS + cells[:, 1]
-    order = np.argsort(points[:, 2], kind="stable")
+    column, row = (
+        np.clip((v - v.min()) / max(v.max() - v.min(), 1e-6) * _CELLS, 0, _CELLS - 1).astype(int) for v in (x, y)
+    )
+    order = np.argsort(height, kind="stable")
     tops = np.full(_CELLS * _CELLS, -1)
-    tops[flat[order]] = roles[order]  # of the points of a cell the highest one is written last
+    tops[(column * _CELLS + row)[order]] = roles[order]  # of the points of a cell the highest one is written last
     tops = tops[tops >= 0]
     names = list(dict.fromkeys(split_role(shape.material)[0] for shape in shapes))
     counts = np.bincount(tops, minlength=len(names))
@@ -45,12 +46,12 @@ def seen_from_above(shapes: Sequence[Shape]) -> dict[str, float]:
 
 
 def _top_samples(shapes: Sequence[Shape]) -> tuple[Any, Any]:
-    """Points spread over all faces that look up, and the number of the role that each belongs to."""
+    """Points (3, N) spread over all faces that look up, and the number of the role that each belongs to."""
     names = list(dict.fromkeys(split_role(shape.material)[0] for shape in shapes))
     numbers = {name: number for number, name in enumerate(names)}
     meshes = [shape for shape in shapes if shape.faces]
     if not meshes:
-        return np.zeros((0, 3)), np.zeros(0, dtype=int)
+        return np.zeros((3, 0)), np.zeros(0, dtype=int)
     extent = np.ptp(np.concatenate([s.vertices[:, :2] for s in shapes if len(s.vertices)]), axis=0)
     cell = max(float(extent[0] * extent[1]), 1e-6) / _CELLS**2
     points = np.concatenate([shape.vertices for shape in meshes])
@@ -58,17 +59,29 @@ def _top_samples(shapes: Sequence[Shape]) -> tuple[Any, Any]:
     fans = [_fan(shape) for shape in meshes]
     corners = np.concatenate([fan + start for fan, start in zip(fans, offsets, strict=False)])
     whose = np.repeat([numbers[split_role(shape.material)[0]] for shape in meshes], [len(fan) for fan in fans])
-    a, b, c = (points[corners[:, k]] for k in range(3))
-    up = 0.5 * ((b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0]))
-    count = np.where(up > 0, np.clip(np.ceil(2.0 * up / cell), 1, 4000), 0).astype(int)
-    which = np.repeat(np.arange(len(corners)), count)
+    shape_of = np.repeat(np.arange(len(meshes)), [len(fan) for fan in fans])
+    a, b, c = (points[corners[:, k]].T for k in range(3))
+    up = 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
+    seen = np.flatnonzero(up > 0)
+    count = np.clip(np.ceil(2.0 * up[seen] / cell), 1, 4000).astype(int)
+    shape_of = np.repeat(shape_of[seen], count)
     # Each shape's points begin the same sequence anew.
-    shape_of = np.repeat(np.arange(len(meshes)), [len(fan) for fan in fans])[which]
-    step = np.arange(len(which)) - np.searchsorted(shape_of, shape_of)
+    step = np.arange(len(shape_of)) - np.searchsorted(shape_of, np.arange(len(meshes)))[shape_of]
+    u, v = _spread(int(step.max(initial=0)).bit_length())[:, step]
+    found = [
+        np.repeat(p, count) + u * np.repeat(q - p, count) + v * np.repeat(r - p, count)
+        for p, q, r in zip(a[:, seen], b[:, seen], c[:, seen], strict=True)
+    ]
+    return np.stack(found), np.repeat(whose[seen], count)
+
+
+@functools.lru_cache(maxsize=4)
+def _spread(bits: int) -> Any:
+    """Two of three weights (2, N) of points spread evenly over a triangle, for 2 ** bits of them."""
+    step = np.arange(2**bits)
     u, v = (step * 0.7548776662) % 1.0, (step * 0.5698402910) % 1.0
     over = u + v > 1
-    u, v = np.where(over, 1 - u, u), np.where(over, 1 - v, v)
-    return a[which] + u[:, None] * (b - a)[which] + v[:, None] * (c - a)[which], whose[which]
+    return np.stack([np.where(over, 1 - u, u), np.where(over, 1 - v, v)])
 
 
 def _fan(shape: Shape) -> Any:

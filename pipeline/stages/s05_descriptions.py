@@ -27,7 +27,8 @@ def run(view: View) -> StageRun:
     layout, _ = apply_hand_edits(parse_layout(program.text), view.hand_edits, program.hand_edits)
     before = view.recall(Descriptions) or Descriptions()
     yield Tell("Measuring colours", 1, 2)
-    meter = ColourMeter(view.reference, calibration.camera, layout)
+    boxes = {o.id: o.box for o in [*analysis.objects, *analysis.left_out] if o.box is not None}
+    meter = ColourMeter(view.reference, calibration.camera, layout, boxes)
     fresh = [p for p in layout.proxies if view.only is None or view.chosen(p.id)]
     measured = {p.id: _measured(meter, p) for p in fresh}
     yield Tell("Describing the objects", 2, 2)

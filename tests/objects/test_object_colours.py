@@ -8,6 +8,7 @@ import io
 import numpy as np
 import pytest
 from code_as_room.pipeline.artifacts.camera import CameraModel
+from code_as_room.pipeline.artifacts.common import ImageBox
 from code_as_room.pipeline.artifacts.layout import Layout, ProxyLine, RoomLine
 from code_as_room.pipeline.artifacts.objects import MeasuredColour, ObjectDescription
 from code_as_room.pipeline.objects.colours import ColourMeter, clean_code, colour_distance, dominant, from_code
@@ -131,3 +132,27 @@ def test_leaves_never_take_the_colour_of_the_floor_between_them() -> None:
 )
 def test_what_a_model_writes_as_a_colour(written: str, code: str) -> None:
     assert clean_code(written) == code
+
+
+def test_what_lies_on_it_a_little_elsewhere_is_not_measured_either() -> None:
+    shown = picture(((0, 0, 0.4, 0.4), "#3A6EA5"), ((0.03, 0.02, 0.3, 0.3), "#F8F8F8"))
+    table, book = thing("a", (0, 0), (0.4, 0.4, 0.5)), thing("b", (0, 0), (0.3, 0.3, 0.05), 0.5, parent="a")
+    box = ImageBox(x_min=476, y_min=466, x_max=536, y_max=526)
+    colours, _ = ColourMeter(shown, CAMERA, Layout(room=ROOM, proxies=[table, book]), {"b": box}).measure(table)
+    assert colours and colour_distance(colours[0].code, "3A6EA5") < 0.08 and colours[0].share > 0.9
+
+
+def test_a_small_thing_is_measured_where_it_was_found_and_in_its_inner_part() -> None:
+    shown = picture(((0, 0, 1.2, 1.2), "#8A5A3C"), ((0.04, -0.03, 0.16, 0.16), "#2FA84F"))
+    shelf, cup = thing("a", (0, 0), (1.2, 1.2, 0.5)), thing("b", (0, 0), (0.16, 0.16, 0.1), 0.5, parent="a")
+    box = ImageBox(x_min=492, y_min=490, x_max=524, y_max=522)
+    colours, _ = ColourMeter(shown, CAMERA, Layout(room=ROOM, proxies=[cup, shelf]), {"b": box}).measure(cup)
+    assert colour_distance(colours[0].code, "2FA84F") < 0.08 and colours[0].share > 0.9
+
+
+def test_a_box_of_something_else_does_not_move_what_is_measured() -> None:
+    shown = picture(((0, 0, 0.6, 0.6), "#3A6EA5"), ((1.2, 1.2, 0.6, 0.6), "#C02020"))
+    box = ImageBox(x_min=680, y_min=200, x_max=800, y_max=320)
+    only = Layout(room=ROOM, proxies=[thing("a", (0, 0), (0.6, 0.6, 0.5))])
+    colours, _ = ColourMeter(shown, CAMERA, only, {"a": box}).measure(only.proxies[0])
+    assert colour_distance(colours[0].code, "3A6EA5") < 0.08

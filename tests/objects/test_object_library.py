@@ -109,16 +109,18 @@ def test_a_models_choice_is_taken_as_far_as_it_can_be() -> None:
     )
 
 
-def test_alike_chairs_are_one_and_a_red_one_is_another() -> None:
+def test_alike_chairs_are_one_and_a_patterned_one_is_another() -> None:
     def chair(name: str, width: float) -> ProxyLine:
         return proxy("dining chair", (width, 0.5, 0.9)).model_copy(update={"id": name})
 
     def colour(name: str, code: str) -> ObjectDescription:
         return ObjectDescription(id=name, measured=[MeasuredColour(code=code, share=1.0)], seen=1.0)
 
-    chairs = [chair("a", 0.45), chair("b", 0.47), chair("c", 0.46), chair("d", 0.7)]
+    chairs = [chair("a", 0.45), chair("b", 0.47), chair("c", 0.46), chair("d", 0.7), chair("e", 0.46)]
     known = Descriptions(objects=[colour("a", "8A6A4A"), colour("b", "8C6C4C"), colour("c", "C02020")])
-    assert alike(chairs, known) == {"a": "a", "b": "a", "c": "c", "d": "d"}
+    halves = [MeasuredColour(code=code, share=0.5) for code in ("C02020", "F0F0F0")]
+    known.objects.append(ObjectDescription(id="e", measured=halves, seen=1.0))
+    assert alike(chairs, known) == {"a": "a", "b": "a", "c": "a", "d": "d", "e": "e"}
 
 
 def room_text(size: tuple[float, float, float] = (0.5, 0.5, 0.9)) -> tuple[Layout, str]:

@@ -141,3 +141,47 @@ def test_a_second_evaluation_that_knows_the_functions_lays_them_just_so() -> Non
     ):
         np.testing.assert_array_equal(a.vertices, b.vertices)
         assert 0.05 < float((c.vertices - a.vertices)[:, 2].mean()) < 0.11
+
+
+BESIDE = """
+room(size=(6, 6, 2.6), floor=[(-3, -3), (3, -3), (3, 3), (-3, 3)])
+proxy("bed_1", "bed", centre=(0, 0, 0.25), size=(1.6, 2.0, 0.5))
+proxy("bench_1", "bench", centre=(0, -1.23, {middle}), size=(1.2, 0.4, {bench}))
+proxy("nightstand_1", "nightstand", centre=(1.06, 0.3, 0.3), size=(0.4, 0.4, 0.6))
+proxy("duvet_1", "duvet", centre=(0, -0.2, 0.45), size=(1.8, 1.8, 0.3), placement="surface", parent="bed_1")
+
+def bed_1(size):
+    return part("mattress", box(size, at=(0, 0, size[2] / 2)), material="linen")
+
+def bench_1(size):
+    return part("bench", box(size, at=(0, 0, size[2] / 2)), material="wood")
+
+def duvet_1(size):
+    w, d, h = size
+    return part("duvet", drape((1.6, 1.6), hang=(0.3, 0.3, 0.35, 0), thickness=0.03, at=(0, 0, h - 0.05), seed=2), material="linen")
+
+furnish("bed_1", bed_1)
+furnish("bench_1", bench_1)
+furnish("nightstand_1", bench_1)
+furnish("duvet_1", duvet_1, lying=True)
+build()
+"""
+
+
+@pytest.mark.parametrize("bench", [0.4, 0.46, 0.3])
+def test_its_ends_hang_into_nothing_that_stands_beside_the_bed(bench: float) -> None:
+    record = made(BESIDE.replace("{bench}", str(bench)).replace("{middle}", str(bench / 2)))
+    points = np.concatenate([s.vertices for s in in_room(record, "duvet_1")])
+    for name in ("bench_1", "nightstand_1"):
+        solid = np.concatenate([s.vertices for s in in_room(record, name)])
+        low, high = solid.min(axis=0) + 0.001, solid.max(axis=0) - 0.001
+        assert not ((points > low) & (points < high)).all(axis=1).any(), name
+    apart = made(
+        BESIDE.replace("{bench}", str(bench))
+        .replace("{middle}", str(bench / 2))
+        .replace("centre=(0, -1.23", "centre=(0, -2.6")
+    )
+    alone = np.concatenate([s.vertices for s in in_room(apart, "duvet_1")])
+    front = np.abs(points[:, 0]) < 0.5
+    assert alone[front & (alone[:, 1] < -1.0)][:, 2].min() < bench - 0.02 or bench <= 0.3
+    np.testing.assert_array_equal(points[points[:, 2] > 0.52], alone[points[:, 2] > 0.52])

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from .arguments import by_kind
 from .budget import spend_vertices
 from .checks import choice, fail, is_number, number, point, positive, sizes, whole
 from .numbers import rand
@@ -31,6 +32,7 @@ def hang_of(hang: Any) -> tuple[float, ...]:
     return tuple(number("drape", "each hang", h, 0.0, 20.0) for h in hang)
 
 
+@by_kind
 def drape(
     size: Any, hang: Any = 0.3, thickness: Any = 0.02, folds: Any = 0.5, puff: Any = 0.3, radius: Any = 0.02,
     floor: Any = None, fringe: Any = 0.0, quilt: Any = 0.0, at: Any = ORIGIN, seed: Any = 0,
@@ -160,6 +162,7 @@ def fringed(made: Shape, points: Floats, length: float, at: Any, seed: Any) -> S
     return tasselled(made, np.concatenate(roots) + offset, np.concatenate(sides), np.concatenate(falls), length, seed)
 
 
+@by_kind
 def curtain(
     size: Any, pleats: Any = 0, gather: Any = 0.0, thickness: Any = 0.004, heading: Any = "wave", at: Any = ORIGIN,
     seed: Any = 0,

@@ -16,11 +16,14 @@ from .proxies import proxy_shapes
 from .record import Record
 from .shape import Shape
 
+NEAR = 0.02
+"""Metres round a cloth within which it could meet something."""
+
 
 def lay_covers(record: Record, names: Iterable[str]) -> None:
     """Lay these objects of a record onto what carries them, and the smaller ones onto the larger ones on the same thing.
 
-    Their shapes as they were are kept in `record.plain`.
+    What stands beside all that keeps their ends out. Their shapes as they were are kept in `record.plain`.
     """
     lines = {line["id"]: line for line in record.proxies}
     done: list[str] = []
@@ -33,8 +36,32 @@ def lay_covers(record: Record, names: Iterable[str]) -> None:
             below += seen_from(shapes, lines[other], line)
         spend_vertices(sum(shape.vertex_count for shape in record.furnished[name]))
         record.plain[name] = record.furnished[name]
-        record.furnished[name] = laid(record.furnished[name], below)
+        beside = standing_beside(record, line, {name, *carriers}, lines)
+        record.furnished[name] = laid(record.furnished[name], below, beside)
         done.append(name)
+
+
+def standing_beside(
+    record: Record, line: Mapping[str, Any], own: set[str], lines: Mapping[str, Mapping[str, Any]]
+) -> list[Shape]:
+    """The shapes near a cloth that have nothing to do with what it lies on, in the cloth's frame.
+
+    Args:
+        own: the ids of the cloth and of all that carries it.
+    """
+    points = np.concatenate([shape.vertices for shape in record.furnished[line["id"]]])
+    low, high = points.min(axis=0) - NEAR, points.max(axis=0) + NEAR
+    found: list[Shape] = []
+    for other in record.proxies:
+        reach = math.hypot(*other["size"][:2]) / 2 + math.hypot(*(high - low)[:2]) / 2
+        apart = math.dist(other["centre"][:2], line["centre"][:2])
+        if apart > reach or other["placement"] in ("wall", "ceiling") or own & {other["id"], *ancestors(other, lines)}:
+            continue
+        shapes = record.furnished.get(other["id"]) or proxy_shapes(other)
+        for shape in seen_from(shapes, other, line):
+            near = (shape.vertices.max(axis=0) > low) & (shape.vertices.min(axis=0) < high)
+            found += [shape] if near.all() else []
+    return found
 
 
 def ancestors(line: Mapping[str, Any], lines: Mapping[str, Mapping[str, Any]]) -> list[str]:

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from .arguments import by_kind
 from .budget import spend_vertices
 from .checks import choice, number, positive, whole
 from .numbers import rand
@@ -35,6 +36,7 @@ FROND = 12
 """Pairs of leaflets of a fern's frond."""
 
 
+@by_kind
 def leaves(
     count: Any, length: Any, width: Any, height: Any = 0.3, spread: Any = 0.5, droop: Any = 0.5, kind: Any = "oval",
     at: Any = ORIGIN, seed: Any = 0,

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from .arguments import by_kind
 from .budget import spend_vertices
 from .checks import choice, fail, number, positive, sizes, whole
 from .rings import Faces, placed
@@ -14,6 +15,7 @@ from .shape import Shape
 from .solids import ORIGIN
 
 
+@by_kind
 def panelled(
     size: Any, columns: Any = 1, rows: Any = 1, border: Any = 0.07, depth: Any = 0.008, style: Any = "sunk",
     at: Any = ORIGIN,

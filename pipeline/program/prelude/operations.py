@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from .arguments import by_kind
 from .budget import spend_vertices
 from .checks import choice, fail, flag, is_number, number, point, text, whole
 from .shape import Floats, Shape, flat_shapes, remeshed
@@ -109,6 +110,7 @@ def mirror(shapes: Any, axis: Any = "x", at: Any = 0.0) -> Shapes:
     return each("mirror", shapes, one)
 
 
+@by_kind
 def array(shapes: Any, count: Any, step: Any) -> list[Shape]:
     """A list of copies, each moved on by step (x, y, z)."""
     found = flat_shapes("array", shapes)

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from .arguments import by_kind
 from .budget import spend_vertices
 from .checks import flag, number, point, positive, whole
 from .shape import Floats
@@ -16,6 +17,7 @@ Outline = list[tuple[float, ...]]
 FLAT_ORIGIN = (0.0, 0.0)
 
 
+@by_kind
 def rectangle(width: Any, depth: Any, radius: Any = 0.0, at: Any = FLAT_ORIGIN, segments: Any = 4) -> Outline:
     """Points (x, y), corners rounded by radius."""
     w, d = positive("rectangle", "width", width), positive("rectangle", "depth", depth)
@@ -33,6 +35,7 @@ def rectangle(width: Any, depth: Any, radius: Any = 0.0, at: Any = FLAT_ORIGIN, 
     return found
 
 
+@by_kind
 def ellipse(width: Any, depth: Any, segments: Any = 32, at: Any = FLAT_ORIGIN) -> Outline:
     """Points (x, y)."""
     w, d = positive("ellipse", "width", width), positive("ellipse", "depth", depth)

@@ -8,12 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from .arguments import by_kind
 from .budget import spend_vertices
 from .checks import choice, fail, flag, is_number, number, point, positive, whole
 from .polygons import bridged, ears, merged
 from .rings import AXES, Faces, circle, crease_of, revolve, ring_sizes, ringed, skin
 from .shape import Floats, Shape
-from .solids import MOST_SEGMENTS, ORIGIN, RIM_STEPS, at_and
+from .solids import MOST_SEGMENTS, ORIGIN, RIM_STEPS
 
 MOST_POINTS = 20_000
 
@@ -41,6 +42,7 @@ def ring_of(where: str, name: str, points: Any) -> list[tuple[float, ...]]:
     return kept if area > 0 else kept[::-1]
 
 
+@by_kind
 def lathe(profile: Any, segments: Any = 32, at: Any = ORIGIN) -> Shape:
     """Points (radius, z) turned round Z: vases, lamp feet, bowls. Ends off the axis get a flat face; a profile that ends
     with its first point is a ring: shades, hollow pots.
@@ -61,6 +63,7 @@ def lathe(profile: Any, segments: Any = 32, at: Any = ORIGIN) -> Shape:
     return ringed("lathe", vertices, faces, at, ring_sizes(points, count), loop, crease=crease_of(count))
 
 
+@by_kind
 def extrude(
     outline: Any, height: Any, at: Any = ORIGIN, axis: Any = "z", edge: Any = 0.0, holes: Any = ()
 ) -> Shape:  # fmt: skip
@@ -69,7 +72,6 @@ def extrude(
     Args:
         edge: rounds the edges of both ends, less than half of the thinnest part. holes: outlines that go through, without edge.
     """  # fmt: skip
-    at, edge = at_and(at, edge)
     corners = ring_of("extrude", "outline", outline)
     depth = positive("extrude", "height", height)
     place = {"x": (1, 2, 0), "y": (0, 2, 1), "z": (0, 1, 2)}[choice("extrude", "axis", axis, AXES)]
@@ -136,6 +138,7 @@ def inside_of(p: tuple[float, float], outline: list[tuple[float, float]]) -> boo
     return found
 
 
+@by_kind
 def tube(points: Any, radius: Any, segments: Any = 12, closed: Any = False, at: Any = ORIGIN) -> Shape:
     """Round, along points (x, y, z); radius a number or one for each point."""
     count = whole("tube", "segments", segments, 3, MOST_SEGMENTS)
@@ -149,6 +152,7 @@ def tube(points: Any, radius: Any, segments: Any = 12, closed: Any = False, at: 
     return led("tube", circle(count)[:, :2], path, loop, radii, at, smooth=True)
 
 
+@by_kind
 def sweep(outline: Any, points: Any, closed: Any = False, at: Any = ORIGIN, smooth: Any = False) -> Shape:
     """An outline (right, up) led along points (x, y, z), mitred: frames, rails, mouldings."""
     corners = np.array(ring_of("sweep", "outline", outline))
@@ -265,6 +269,7 @@ def cross(a: Triple, b: Triple) -> Triple:
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
+@by_kind
 def loft(outlines: Any, heights: Any, at: Any = ORIGIN, smooth: Any = True) -> Shape:
     """A solid through outlines (x, y) above each other, all of as many points."""
     if not isinstance(outlines, (list, tuple)) or not 2 <= len(outlines) <= 1000:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from .arguments import by_kind
 from .budget import spend_vertices
 from .checks import COORDINATE_LIMIT, fail, flag, is_number, point, positive, whole
 from .rings import Faces, placed
@@ -16,6 +17,7 @@ from .solids import ORIGIN
 MOST_FACES = 500_000
 
 
+@by_kind
 def grid(function: Any, nx: Any, ny: Any, size: Any = (1.0, 1.0), at: Any = ORIGIN, smooth: Any = True) -> Shape:
     """An open sheet of nx times ny cells by function(u, v), u and v in 0..1: a height over `size` (width, depth), or a point
     (x, y, z). Its upper side is where u runs right and v away.
@@ -45,6 +47,7 @@ def grid(function: Any, nx: Any, ny: Any, size: Any = (1.0, 1.0), at: Any = ORIG
     return placed("grid", vertices, faces, at, flag("grid", "smooth", smooth))
 
 
+@by_kind
 def mesh(vertices: Any, faces: Any, at: Any = ORIGIN, smooth: Any = False) -> Shape:
     """Points (x, y, z); faces are lists of point numbers, counter-clockwise from outside."""
     if not isinstance(vertices, (list, tuple)) or len(vertices) < 3:

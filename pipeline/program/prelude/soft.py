@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from .arguments import by_kind
 from .budget import spend_vertices
 from .checks import choice, fail, flag, number, positive, sizes, whole
 from .profiles import tube
@@ -18,6 +19,7 @@ from .solids import ORIGIN
 from .unwrap import corner_uvs
 
 
+@by_kind
 def cushion(
     size: Any, puff: Any = 0.25, radius: Any = 0.04, seam: Any = True, sag: Any = 0.0, at: Any = ORIGIN, seed: Any = 0
 ) -> Shape:
@@ -101,6 +103,7 @@ def cube_grid(cuts: tuple[int, ...]) -> tuple[Floats, Faces]:
     return np.array(points), faces
 
 
+@by_kind
 def pillow(size: Any, plump: Any = 0.6, ears: Any = 0.5, at: Any = ORIGIN, seed: Any = 0) -> Shape:
     """Lying flat; turn it to lean.
 
@@ -135,6 +138,7 @@ def pillow(size: Any, plump: Any = 0.6, ears: Any = 0.5, at: Any = ORIGIN, seed:
     return placed("pillow", vertices, faces, at, smooth=True, crease=75.0)
 
 
+@by_kind
 def tufted(size: Any, columns: Any = 4, rows: Any = 2, depth: Any = 0.03, at: Any = ORIGIN) -> Shape:
     """An upright panel, its front (-Y) buttoned: headboards, sofa backs."""
     w, d, h = sizes("tufted", "size", size)
@@ -177,6 +181,7 @@ def without_back(points: Floats, faces: Faces) -> tuple[Floats, Faces]:
     return points[used], [tuple(new[v] for v in face) for face in front]
 
 
+@by_kind
 def pouf(size: Any, style: Any = "knit", at: Any = ORIGIN, seed: Any = 0) -> Shape:
     """Round; style "knit" or "panels"."""
     w, d, h = sizes("pouf", "size", size)

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from .arguments import by_kind
 from .budget import spend_vertices
 from .checks import fail, is_number, number, positive, sizes, whole
 from .rings import Faces, along, circle, crease_of, placed, revolve, ring_sizes, ringed, skin
@@ -20,14 +21,7 @@ BOX_CORNERS = np.array([(x, y, z) for z in (-1, 1) for x, y in ((-1, -1), (1, -1
 BOX_FACES: Faces = [(3, 2, 1, 0), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]
 
 
-def at_and(at: Any, value: Any) -> tuple[Any, Any]:
-    """`at` and the number that has its place in the reference, which lists what every shape takes only once.
-
-    A number where `at` is expected can only mean the other one: cylinder(0.1, 0.4, 0.005) has an edge of 5 mm.
-    """
-    return (ORIGIN, at) if is_number(at) else (at, value)
-
-
+@by_kind
 def box(size: Any, at: Any = ORIGIN) -> Shape:
     """size is (width x, depth y, height z)."""
     half = np.array(sizes("box", "size", size)) / 2
@@ -35,6 +29,7 @@ def box(size: Any, at: Any = ORIGIN) -> Shape:
     return placed("box", BOX_CORNERS * half, BOX_FACES, at)
 
 
+@by_kind
 def rounded_box(size: Any, radius: Any = 0.02, at: Any = ORIGIN, segments: Any = 3) -> Shape:
     """Edges and corners rounded; segments=1 bevels them.
 
@@ -81,18 +76,18 @@ def rounded_ends(steps: int, columns: int, last: int) -> list[tuple[int, ...]]:
     return faces
 
 
+@by_kind
 def cylinder(radius: Any, height: Any, at: Any = ORIGIN, segments: Any = 24, axis: Any = "z", edge: Any = 0.0) -> Shape:
     """edge rounds the rims."""
-    at, edge = at_and(at, edge)
     return frustum("cylinder", positive("cylinder", "radius", radius), None, height, at, segments, axis, edge)
 
 
+@by_kind
 def cone(
     radius: Any, height: Any, top_radius: Any = 0.0, at: Any = ORIGIN, segments: Any = 24, axis: Any = "z",
     edge: Any = 0.0,
 ) -> Shape:  # fmt: skip
     """Cut off where top_radius is above 0."""
-    at, edge = at_and(at, edge)
     bottom, top = number("cone", "radius", radius, 0.0), number("cone", "top_radius", top_radius, 0.0)
     if bottom == 0 and top == 0:
         raise fail("cone", "radius and top_radius must not both be 0")
@@ -135,9 +130,9 @@ def rounded_rims(profile: list[tuple[float, float]], edge: float) -> list[tuple[
     return found + (ends[::-1] if top else [profile[1]])
 
 
+@by_kind
 def prism(sides: Any, radius: Any, height: Any, at: Any = ORIGIN, axis: Any = "z", edge: Any = 0.0) -> Shape:
     """On a regular polygon, radius to a corner; edge rounds the ends."""
-    at, edge = at_and(at, edge)
     count = whole("prism", "sides", sides, 3, MOST_SEGMENTS)
     half, across = positive("prism", "height", height) / 2, positive("prism", "radius", radius)
     profile = rounded_rims([(across, -half), (across, half)], number("prism", "edge", edge, 0.0))
@@ -147,6 +142,7 @@ def prism(sides: Any, radius: Any, height: Any, at: Any = ORIGIN, axis: Any = "z
     )
 
 
+@by_kind
 def wedge(size: Any, front: Any = 0.0, at: Any = ORIGIN) -> Shape:
     """A box whose top slopes from full height at the back (+Y) to `front` at the front (-Y)."""
     w, d, h = sizes("wedge", "size", size)
@@ -165,6 +161,7 @@ def wedge(size: Any, front: Any = 0.0, at: Any = ORIGIN) -> Shape:
     return placed("wedge", np.array(back + ahead), faces, at)
 
 
+@by_kind
 def sphere(radius: Any, at: Any = ORIGIN, segments: Any = 24, rings: Any = 12) -> Shape:
     """A radius (x, y, z) makes an ellipsoid."""
     if is_number(radius):
@@ -177,6 +174,7 @@ def sphere(radius: Any, at: Any = ORIGIN, segments: Any = 24, rings: Any = 12) -
     return ringed("sphere", vertices * radii, faces, at, ring_sizes(profile, columns), crease=180.0)
 
 
+@by_kind
 def capsule(radius: Any, height: Any, at: Any = ORIGIN, segments: Any = 24, rings: Any = 6, axis: Any = "z") -> Shape:
     """Half-round ends; height is over all."""
     bend, whole_height = positive("capsule", "radius", radius), positive("capsule", "height", height)
@@ -191,6 +189,7 @@ def capsule(radius: Any, height: Any, at: Any = ORIGIN, segments: Any = 24, ring
     return ringed("capsule", along("capsule", vertices, axis), faces, at, ring_sizes(profile, columns), crease=180.0)
 
 
+@by_kind
 def torus(
     radius: Any, thickness: Any, at: Any = ORIGIN, segments: Any = 32, rings: Any = 12, axis: Any = "z",
     angle: Any = 360.0,
@@ -199,7 +198,6 @@ def torus(
 
     Round "x" an arc begins at +Y, round "y" at +Z.
     """
-    at, angle = at_and(at, angle)
     middle, bend = positive("torus", "radius", radius), positive("torus", "thickness", thickness)
     if bend >= middle:
         raise fail("torus", "thickness, the tube's own radius, must be smaller than radius")

@@ -30,9 +30,10 @@ def tint(shapes: Any, colors: Any) -> Shapes:
 
     def tinted(shape: Shape) -> Shape:
         role, colour = split_role(shape.material)
-        if role not in wanted:
+        key = shape.material if shape.material in wanted else role  # "wood #8A5A3C" is one colour of wood only
+        if key not in wanted:
             return shape
-        other, new = wanted[role]
+        other, new = wanted[key]
         return replace(shape, material=coloured_role(other or role, new or colour))
 
     return each("tint", shapes, tinted)

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from .arguments import by_kind
 from .budget import spend_vertices
 from .checks import choice, number, point, sizes
 from .numbers import rand
@@ -46,6 +47,7 @@ def tasselled(made: Shape, roots: Floats, sides: Floats, falls: Floats, length: 
     )
 
 
+@by_kind
 def rug(size: Any, shape: Any = "box", fringe: Any = 0.0, border: Any = 0.0, at: Any = ORIGIN, seed: Any = 0) -> Shape:
     """size (width, depth, thickness), underside at z = 0; shape "box", "round" or "hide".
 
