@@ -23,6 +23,8 @@ from .tone import scene_light, shown
 LEAST, MOST = -4.0, 4.0
 """Stops; lights that need more are wrong themselves."""
 _FLOOR_WEIGHT = 0.6
+GLOSS = 0.03
+"""What surfaces give back beside their colour: the gloss that everything has."""
 _GREY = 0.36
 """Linear light on the screen that floor and walls have together where there is no picture to go by."""
 
@@ -40,7 +42,7 @@ def matched(
     points, normals, surface = (seen.points, seen.normals, seen.surface) if seen is not None else floor_and_walls(space)
     arriving = irradiance(space, lights, sky, points, normals)
     light = arriving.lights.sum(axis=0) + arriving.sky
-    gives = light * space.albedo_of(np.asarray(surface).astype(np.int64)) / math.pi
+    gives = light * (space.albedo_of(np.asarray(surface).astype(np.int64)) + GLOSS) / math.pi
     if seen is None:
         target = scene_light(on_screen(np.array([_GREY])), transform, look)[0]
         return _held(math.log2(target / max(float(np.median(gives)), 1e-6))), []

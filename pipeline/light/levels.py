@@ -11,7 +11,7 @@ import numpy as np
 from ..artifacts.layout import LightLine
 from ..geometry.polygon import Floats
 from .estimate import irradiance
-from .exposure import on_screen
+from .exposure import GLOSS, on_screen
 from .measure import LEAST_PLACES, Places
 from .space import Bools, Space
 from .tone import scene_light
@@ -34,7 +34,7 @@ def levelled(
         return list(lights)
     arriving = irradiance(space, lights, sky, seen.points, seen.normals)
     albedo = space.albedo_of(np.asarray(seen.surface).astype(np.int64))
-    wanted = scene_light(on_screen(seen.light), transform, look) * math.pi / np.maximum(albedo, 1e-3)
+    wanted = scene_light(on_screen(seen.light), transform, look) * math.pi / (albedo + GLOSS)
     factors = dict.fromkeys(fills, 1.0)
     under = {n: below(lights[n], seen.points) for n in fills}
     for _ in range(_ROUNDS):

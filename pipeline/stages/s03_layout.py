@@ -18,6 +18,7 @@ from ..artifacts.replies import CritiqueReply
 from ..errors import RoomError
 from ..layout.hand import apply_hand_edits, name_now, place_edited
 from ..layout.initial import Evidence, first_layout, is_major
+from ..layout.open_tops import with_open_tops
 from ..layout.overlay import draw_outlines
 from ..layout.past import Past
 from ..layout.pins import pinned
@@ -27,6 +28,7 @@ from ..layout.sanitise import Sanitised, sanitise
 from ..layout.score import WEIGHTS, Expected, measure, with_model
 from ..layout.solve import Ties, solve
 from ..layout.spread import placement_spread
+from ..light.measure import small
 from ..program.lines import parse_layout, print_layout
 from .base import Reads, Stage, View
 from .carrying import FURNISHING, furnished
@@ -226,6 +228,8 @@ def run(view: View) -> StageRun:
     analysis, calibration, graph = view.need(SceneAnalysis), view.need(Calibration), view.need(SceneGraph)
     evidence = Evidence({o.id: o for o in analysis.objects})
     layout, findings = first_layout(analysis, calibration, evidence)
+    if analysis.view != "plan":
+        layout = with_open_tops(layout, calibration.camera, small(view.reference))
     layout = apply_hand_edits(layout, view.hand_edits)[0]
     standing = _standing(view)
     frozen, chosen = view.locked, None

@@ -185,3 +185,23 @@ def test_its_ends_hang_into_nothing_that_stands_beside_the_bed(bench: float) -> 
     front = np.abs(points[:, 0]) < 0.5
     assert alone[front & (alone[:, 1] < -1.0)][:, 2].min() < bench - 0.02 or bench <= 0.3
     np.testing.assert_array_equal(points[points[:, 2] > 0.52], alone[points[:, 2] > 0.52])
+
+
+TURNED_DOWN = """    z = h - 0.06
+    sheet = drape((w + 0.1, d - 0.1), hang=(z, z, z, 0), thickness=0.03, folds=0.4, puff=0.3, at=(0, 0, z), seed=2)
+    band = drape((w + 0.14, 0.4), hang=(0.16, 0.16, 0, 0), thickness=0.02, folds=0.3, at=(0, d / 2 - 0.25, z + 0.035), seed=5)
+    return [part("duvet", sheet, material="linen"), part("turned-down band", band, material="linen")]
+"""
+
+
+def test_two_hanging_layers_do_not_lie_in_one_plane() -> None:
+    """Faces in one plane are drawn black: the light of each is taken away by the other."""
+    before, rest = ROOM.split("def duvet_1(size):\n    w, d, h = size\n")
+    plain = rest.partition("\n\n")[2]
+    record = made(f"{before}def duvet_1(size):\n    w, d, h = size\n{TURNED_DOWN}\n{plain}")
+    sheet, band = (shape.vertices for shape in record.furnished["duvet_1"])
+    for side in (-1, 1):
+        own, other = (v[(side * v[:, 0] > 0.7) & (v[:, 2] < 0.02) & (v[:, 1] > 0.2)] for v in (sheet, band))
+        assert len(own) > 20 and len(other) > 20
+        same = np.abs(other[:, None, 0] - own[None, :, 0]) < 1e-5
+        assert same.any(axis=1).mean() < 0.2

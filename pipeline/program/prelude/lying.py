@@ -32,6 +32,8 @@ FOLDED = 0.045
 BEND = 0.03
 """A cloth reaches `OVER` beyond its ground and bends with this radius; ends that reach less than `FOLDED` beyond it, and
 hang already, keep their own shape. Metres."""
+LAYER, LAYERS = 0.3, 2.5
+"""Of their distance, that hanging layers of a cloth keep, and how many times its thickness counts at most."""
 MOST_KNOWN = 24
 _NOT_YET = np.zeros((0, 3))
 _KNOWN: dict[str, Floats | None] = {}
@@ -175,7 +177,7 @@ def placed_on(points: Floats, normals: Floats, rest: Rest, bed: Bed, field: Fiel
 
 def folding(beyond: Floats, out: Floats, lies: Any) -> Any:
     """Which vertices belong to a side on which the flat part of the cloth reaches well beyond its ground, (N,)."""
-    side = np.where(np.abs(out[:, 0]) > np.abs(out[:, 1]), np.where(out[:, 0] > 0, 0, 1), np.where(out[:, 1] > 0, 2, 3))
+    side = sides(out)
     found = np.zeros(len(beyond), dtype=bool)
     for number in range(4):
         mine = side == number
@@ -185,13 +187,29 @@ def folding(beyond: Floats, out: Floats, lies: Any) -> Any:
     return found
 
 
+def sides(out: Floats) -> Any:
+    """Which of four sides ways out belong to, (N,)."""
+    return np.where(np.abs(out[:, 0]) > np.abs(out[:, 1]), np.where(out[:, 0] > 0, 0, 1), np.where(out[:, 1] > 0, 2, 3))
+
+
+def layered(beyond: Floats, out: Floats, hangs: Any, thick: float) -> Floats:
+    """How far outside of its innermost layer the hanging end of a cloth is, (N,): two layers never share a place."""
+    side, found = sides(out), np.zeros(len(beyond))
+    for number in range(4):
+        mine = hangs & (side == number)
+        if mine.any():
+            found[mine] = np.clip(beyond[mine] - np.median(beyond[mine]) + thick, 0.0, LAYERS * thick)
+    return found
+
+
 def hanging(
     height: Floats, normals: Floats, thick: float, beyond: Floats, out: Floats, edge: Floats, ground: Floats
 ) -> Floats:
     """Vertices bent down over the edge: as far along the cloth from it as they lay beyond it, (N, 3)."""
     along = np.maximum(0.0, beyond - OVER) + np.maximum(0.0, -height)
     outer = (normals[:, :2] * out).sum(axis=1) > 0
-    skin = np.where(height < 0, np.where(outer, thick, 0.0), height)
+    hangs = height < 0
+    skin = np.where(hangs, np.where(outer, thick, 0.0) + LAYER * layered(beyond, out, hangs, thick), height)
     angle = np.minimum(along / BEND, math.pi / 2)
     reach = OVER + BEND * np.sin(angle) + skin * np.sin(angle)
     down = BEND * (1 - np.cos(angle)) + np.maximum(0.0, along - BEND * math.pi / 2)
