@@ -45,7 +45,7 @@ SHRINK = 0.06
 """Part by which such a thing is made smaller before it is moved away from a wall: its middle is known better."""
 REPORT = 0.03
 FURNITURE_OVERLAP = 0.02
-PASSES = 3
+PASSES = 20
 
 
 @dataclass(frozen=True)

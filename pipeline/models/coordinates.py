@@ -51,8 +51,6 @@ def as_asked(data: Any, model: str, sizes: Sequence[tuple[int, int]]) -> tuple[A
     """
     found = _Found()
     result = _copied(data, "gemini" in model.lower(), found, 0)
-    for box in found.boxes:
-        _put_in_order(box)
     _bring_to_scale(found, sizes)
     if _axes_are_mixed_up(found.things):
         for box in found.boxes:
@@ -127,12 +125,6 @@ def _point(value: Any, y_first: bool, found: _Found) -> Any:
     return value
 
 
-def _put_in_order(box: dict[str, Any]) -> None:
-    for low, high in (("x_min", "x_max"), ("y_min", "y_max")):
-        if box[low] > box[high]:
-            box[low], box[high] = box[high], box[low]
-
-
 def _bring_to_scale(found: _Found, sizes: Sequence[tuple[int, int]]) -> None:
     """Fractions and pixels to 0-1000."""
     every = [abs(number) for number in _numbers(found)]
@@ -141,8 +133,9 @@ def _bring_to_scale(found: _Found, sizes: Sequence[tuple[int, int]]) -> None:
         _multiply(found, 1000.0, 1000.0)
         found.note("places in the picture were given as fractions of it, and read so")
         return
-    right = [box["x_max"] for box in found.boxes]
-    low = [box["y_max"] for box in found.boxes]
+    # Boxes may be inside out: that is told and mended where the picture's objects are read.
+    right = [max(box["x_min"], box["x_max"]) for box in found.boxes]
+    low = [max(box["y_min"], box["y_max"]) for box in found.boxes]
     outside = sum(x > _OUTSIDE or y > _OUTSIDE for x, y in zip(right, low, strict=True))
     # One box beyond the edge is a slip. Corners may lie outside of the picture, so they tell nothing.
     if outside < 2 or outside * 25 < len(found.boxes):

@@ -15,8 +15,8 @@ from code_as_room.pipeline.scene.tags import find_room_collection
 from code_as_room.pipeline.stages import all_stages
 
 SAMPLE = Path(__file__).resolve().parents[2] / "samples" / "bedroom"
-ADDED = ("ceiling", "section", "skirting")
-"""What the view line brings, and nothing else may."""
+ADDED = ("ceiling", "section", "skirting", "wall_tops")
+"""What the view line and the finish of wall tops bring, and nothing else may."""
 
 
 def run(stages: Any) -> None:
