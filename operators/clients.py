@@ -163,7 +163,8 @@ def service_host() -> str:
 
 
 def room_client(picture_hash: str, spent: float) -> ModelClient:
-    """`current_client` for one room: every question is priced and held against the room's spending cap.
+    """`current_client` for one room: every question is priced and held against the room's spending cap, and where a weak
+    model's answers cannot be used, the built-in analysis answers.
 
     Args:
         picture_hash: of the reference image, which the room's running total is kept under in this session.
@@ -175,9 +176,10 @@ def room_client(picture_hash: str, spent: float) -> ModelClient:
     client, settings = current_client(), client_settings()
     if not settings.is_service:
         return client
+    from ..pipeline.ask_floor import with_floor
     from ..pipeline.spending import metered
 
-    return metered(client, settings, room_meter(picture_hash, spent), prices())
+    return with_floor(metered(client, settings, room_meter(picture_hash, spent), prices()), settings)
 
 
 def room_meter(picture_hash: str, spent: float) -> Meter:

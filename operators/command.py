@@ -258,6 +258,7 @@ def _settings(options: argparse.Namespace, earlier: dict[str, str]) -> dict[str,
 
 
 def _client(options: argparse.Namespace) -> ModelClient:
+    from ..pipeline.ask_floor import with_floor
     from ..pipeline.models.recorded import Recorder
     from ..pipeline.models.registry import ClientSettings, make_client, settings_from_environment
     from ..pipeline.spending import metered
@@ -270,7 +271,7 @@ def _client(options: argparse.Namespace) -> ModelClient:
         settings = settings_from_environment({**os.environ, **{f"CODE_AS_ROOM_{name}": v for name, v in given.items()}})
     else:
         settings = settings_from_environment()
-    client = metered(make_client(settings), settings)
+    client = with_floor(metered(make_client(settings), settings), settings)
     if options.record is None:
         return client
     return Recorder(client, prepare_folder(options.record, "--record"))
@@ -279,7 +280,7 @@ def _client(options: argparse.Namespace) -> ModelClient:
 def _painter(options: argparse.Namespace, client: ModelClient) -> ImageClient | None:
     """The image model that the options, or the environment, name; its images count towards the questions' cap."""
     from ..pipeline.models.image_registry import image_settings_from_environment, make_image_client
-    from ..pipeline.spending import Meter
+    from ..pipeline.spending import Meter, meter_of
     from ..pipeline.spending_images import metered_painter
 
     given = {
@@ -290,7 +291,7 @@ def _painter(options: argparse.Namespace, client: ModelClient) -> ImageClient | 
     }
     said = {f"CODE_AS_ROOM_IMAGE_{name}": value for name, value in given.items() if value}
     settings = image_settings_from_environment({**os.environ, **said})
-    return metered_painter(make_image_client(settings), settings, getattr(client, "meter", None) or Meter())
+    return metered_painter(make_image_client(settings), settings, meter_of(client) or Meter())
 
 
 def _print_progress(what: str, step: int, steps: int) -> None:

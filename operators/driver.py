@@ -15,6 +15,7 @@ from typing import Any
 
 import bpy
 
+from ..pipeline.ask_replaced import replaced_answers
 from ..pipeline.errors import Cancelled, RoomError
 from ..pipeline.run import Run, StageReport
 from ..pipeline.run_corrections import bring_up_to_date
@@ -232,7 +233,8 @@ def _finish(job: Job) -> Outcome:
     else:
         view_state.note_failure(uid, progress.stage, job.error)
         outcome = Outcome(f"{progress.title or 'The run'} failed", view_state.Problem.of(job.error))
-    outcome = replace(outcome, notices=tuple(job.backend.notices))
+    replaced = replaced_answers(job.run.memory, [report.stage for report in job.run.reports])
+    outcome = replace(outcome, notices=(*job.backend.notices, *(finding.message for finding in replaced)))
     _outcomes[uid] = outcome
     _reports.setdefault(uid, []).extend(job.run.reports)
     if job.wrote and not in_hand():

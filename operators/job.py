@@ -78,6 +78,7 @@ class Job:
         self._worker = Worker()
         self._session: StageSession | None = None
         self._building: tuple[Building, Planned] | None = None
+        self._ending: tuple[BaseException, Building] | None = None
         self._meanwhile = Meanwhile(run, backend)
         self._built = ""
         self._applied = False
@@ -112,9 +113,12 @@ class Job:
         try:
             clients.watch_online_access(self.run.client)
             clients.watch_online_access(self.run.painter)
+            if self._ending is not None:
+                self._go_on_ending(deadline)
+                return not self.over
             if self._worker.busy and time.monotonic() > self._stopped_at + PATIENCE:
                 self._end(Cancelled())
-            while not self.over:
+            while not self.over and self._ending is None:
                 if self._building is not None:
                     if not self._go_on_building(deadline):
                         break
@@ -122,7 +126,7 @@ class Job:
                     break
                 if time.monotonic() >= deadline:
                     break
-            if not self.over:
+            if not self.over and self._ending is None:
                 self._flush()
         except Exception as error:
             self._end(error)
@@ -138,7 +142,7 @@ class Job:
 
     def wait(self, seconds: float) -> None:
         """Block until the worker has something, at most this long (for runs without a window)."""
-        if self._building is None:
+        if self._building is None and self._ending is None:
             self._worker.wait(seconds)
 
     @property
@@ -158,7 +162,7 @@ class Job:
             return False
         self.must_put_back = False
         if not self._built or self.backend.program_text() == self._built:
-            self._meanwhile.put_back()
+            self._meanwhile.put_back(self._ending[1] if self._ending is not None else None)
             self.backend.save_memory(dump_memory(self.run.memory))
         return True
 
@@ -378,6 +382,43 @@ class Job:
         self.progress.note = ""
 
     def _end(self, error: BaseException | None) -> None:
+        """The job is over, once the room that stood before is ready to be put back."""
+        if self.over or self._ending is not None:
+            return
+        former = self._former_room() if error is not None else None
+        if error is None or former is None:
+            return self._be_over(error)
+        self.phase, self._ending = "putting the room back", (error, former)
+
+    def _former_room(self) -> Building | None:
+        """What has to be built before this job is over, None when nothing has."""
+        try:
+            if self._building is not None:
+                self._building[0].drop()
+                self._building = None
+            if self._session is None or self._applied or not self._built or self._must_wait():
+                return None
+            return self._meanwhile.former_room() if self.backend.program_text() == self._built else None
+        except RoomError:
+            return None  # told when it is put back
+
+    def _go_on_ending(self, deadline: float) -> None:
+        """Prepare the former room in slices, so that Blender goes on meanwhile; then be over."""
+        assert self._ending is not None
+        error, former = self._ending
+        try:
+            while former.step():
+                if time.monotonic() >= deadline:
+                    return
+        except Exception:
+            log.exception("The former room could not be prepared")
+        while self._worker.busy and (message := self._worker.take()) is not None:
+            if isinstance(message, AskEvent):  # the worker noticed the stop meanwhile
+                self.progress.take(message)
+        self._be_over(error)
+        former.drop()
+
+    def _be_over(self, error: BaseException | None) -> None:
         """The job is over; what was answered so far is in memory."""
         if self.over:
             return

@@ -23,7 +23,9 @@ from ..pipeline.errors import RoomError
 from ..pipeline.memory import Entry, EntryMeta, Memory, dump_memory, now
 from ..pipeline.program.patch import patch_text
 from ..pipeline.run import Run, StageSession
+from ..pipeline.scene.plan import plan_build
 from . import properties, reference, room_memory
+from .building import Building
 from .scene_backend import ResolvedScene, scene_by_uid
 
 log = logging.getLogger(__name__)
@@ -118,8 +120,18 @@ class Meanwhile:
         entry = HandEdits(edits=edits, findings=findings)
         self._run.memory.append("artist", entry, EntryMeta(time=now(), model="artist"))
 
-    def put_back(self) -> None:
-        """The room that stood before the stage stands again, with what the artist did since. Main thread only."""
+    def former_room(self) -> Building | None:
+        """The build that `put_back` commits, to be prepared in slices; None where there is nothing to build."""
+        if not self.standing or self._backend.program_text() == self.standing:
+            return None
+        return Building(self._backend, plan_build(self.standing, meshes=False))
+
+    def put_back(self, prepared: Building | None = None) -> None:
+        """The room that stood before the stage stands again, with what the artist did since. Main thread only.
+
+        Args:
+            prepared: what `former_room` gave, as far as it was prepared.
+        """
         if not self.standing:
             return
         edits = self._backend.read_back()
@@ -128,7 +140,10 @@ class Meanwhile:
         text, findings = self.patched(self.standing, edits)
         if edits:
             self.take_over(edits, findings)
-        self._backend.build(text)
+        if prepared is not None and prepared.plan.text == text:
+            prepared.commit()
+        else:
+            self._backend.build(text)
 
     def flush(self, is_whole: bool) -> bool:
         """Write the memory's text that waits; False when the file's memory was changed behind the job's back.

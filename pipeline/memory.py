@@ -13,6 +13,7 @@ import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
+from functools import cached_property
 from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
@@ -83,12 +84,17 @@ class EntryMeta(Artifact):
 
 
 class Entry(Artifact):
-    """One thing that was written to memory."""
+    """One thing that was written to memory, never changed afterwards."""
 
     stage: str
     type: str
     output: dict[str, Any]
     meta: EntryMeta
+
+    @cached_property
+    def text(self) -> str:
+        """The entry as it stands in the memory's text. Kept, since the whole text is written again with every answer."""
+        return json.dumps(_fold(self.model_dump(mode="json")), indent=1, ensure_ascii=False, allow_nan=False)
 
 
 @dataclass
@@ -166,9 +172,13 @@ def dump_memory(memory: Memory) -> str:
         "format": FORMAT,
         "picture": {"name": memory.picture_name, "hash": memory.picture_hash},
         "settings": memory.settings,
-        "entries": [entry.model_dump(mode="json") for entry in memory.entries],
+        "entries": [],
     }
-    return json.dumps(_fold(data), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    text = json.dumps(_fold(data), indent=1, ensure_ascii=False, allow_nan=False)
+    if memory.entries:
+        entries = ",\n".join(entry.text for entry in tuple(memory.entries)).replace("\n", "\n  ")
+        text = text.removesuffix("[]\n}") + f"[\n  {entries}\n ]\n}}"
+    return text + "\n"
 
 
 def load_memory(text: str) -> Memory:

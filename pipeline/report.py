@@ -17,6 +17,7 @@ from .artifacts.light import LightPlan
 from .artifacts.materials import Materials
 from .artifacts.surfaces import SmallObjects
 from .artifacts.textures import Textures
+from .ask_replaced import replaced_answers
 from .errors import RoomError
 from .memory import Memory
 from .program.lines import parse_layout
@@ -196,7 +197,7 @@ def _place(proxy: ProxyLine | None) -> list[Content]:
 
 
 def all_findings(memory: Memory) -> list[Finding]:
-    """What every current artifact reports, each sentence once, errors first."""
+    """What every current artifact reports, and what did not come from the model; each sentence once, errors first."""
     artifacts = (
         memory.latest(SceneAnalysis),
         memory.latest(Calibration),
@@ -209,7 +210,9 @@ def all_findings(memory: Memory) -> list[Finding]:
         memory.latest(LightPlan),
         memory.latest(HandEdits),
     )
-    found = {(f.severity, f.about, f.message): f for a in artifacts if a is not None for f in a.findings}
+    findings = [finding for artifact in artifacts if artifact is not None for finding in artifact.findings]
+    findings += replaced_answers(memory)
+    found = {(f.severity, f.about, f.message): f for f in findings}
     order = list(_SEVERITIES)
     return sorted(found.values(), key=lambda f: order.index(f.severity))
 

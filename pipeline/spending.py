@@ -35,6 +35,7 @@ __all__ = [
     "begin_total",
     "estimate_prompt",
     "estimate_run",
+    "meter_of",
     "metered",
     "money",
     "picture_tokens",
@@ -282,10 +283,16 @@ def metered(
     return CappedClient(client, meter, price_lookup(prices or bundled_prices(), settings))
 
 
+def meter_of(client: ModelClient) -> Meter | None:
+    """The running total that a client counts on, however it is wrapped; None where nothing is counted."""
+    found: Any = client
+    while found is not None and not isinstance(found, CappedClient):
+        found = getattr(found, "inner", None)
+    return found.meter if found is not None else None
+
+
 def begin_total(client: ModelClient, spent: float) -> None:
     """Tell a client's meter what the room has cost before, in US dollars."""
-    found: Any = client
-    while found is not None:
-        if isinstance(found, CappedClient):
-            found.meter.raise_to(spent)
-        found = getattr(found, "inner", None)
+    meter = meter_of(client)
+    if meter is not None:
+        meter.raise_to(spent)

@@ -97,11 +97,7 @@ class AnthropicClient(HttpClient):
     def body(self, prompt: Prompt, habits: Habits) -> dict[str, Any]:
         """The request's body."""
         shared, rest = halves(prompt, in_words=habits.structure != "schema")
-        content: list[dict[str, Any]] = []
-        if shared:
-            marked = {"cache_control": {"type": "ephemeral"}} if habits.cache else {}
-            content.append({"type": "text", "text": shared, **marked})
-        content += [
+        content: list[dict[str, Any]] = [
             {
                 "type": "image",
                 "source": {"type": "base64", "media_type": picture_kind(image), "data": picture_text(image)},
@@ -114,6 +110,10 @@ class AnthropicClient(HttpClient):
             "max_tokens": habits.most_tokens,
             "messages": [{"role": "user", "content": content}],
         }
+        if shared:
+            # What is kept must come first, and pictures stand before the text of their message: so it is a system prompt.
+            marked = {"cache_control": {"type": "ephemeral"}} if habits.cache else {}
+            body["system"] = [{"type": "text", "text": shared, **marked}]
         if habits.structure == "schema":
             body["output_config"] = {"format": {"type": "json_schema", "schema": dict(prompt.schema)}}
         if habits.stream:

@@ -143,7 +143,7 @@ class _Trial:
         except ReplyError as error:
             return self._step(4, "unsure", error.message)
         except ServiceError as error:
-            if error.kind in ("request", "model", "shape", "server", "size"):
+            if error.kind in ("pictures", "request", "model", "shape", "server", "size"):
                 return self._step(4, "bad", error.message)
             return self._step(4, "unsure", error.message)
         colour = _answer_in(reply.text, "colour")

@@ -31,6 +31,7 @@ FaultKind = Literal[
     "request",
     "refusal",
     "shape",
+    "pictures",
 ]
 RETRIED_STATUSES = frozenset({408, 429, 500, 502, 503, 504, 529})
 _LONGEST_SENTENCE = 400
@@ -40,6 +41,18 @@ _MONEY = re.compile(
     r"|exceeded your current quota|out of credits|not enough credits|payment[_ ]required|quota[_ ]exceeded|usage limit",
     re.IGNORECASE,
 )
+_BLIND_STATUSES = frozenset({0, 400, 404, 415, 422, 500, 501})
+"""llama.cpp says with a 500 that its model is one for text only; 0 is an error without a status."""
+_PICTURES = re.compile(r"image|picture|vision|multi-?modal", re.IGNORECASE)
+_TAKES_NONE = re.compile(
+    r"not (?:currently )?(?:support|a (?:vision|multi-?modal))|unsupported|mmproj|(?:does not|doesn't|cannot|can't) "
+    r"(?:support|take|accept|see|have)|text[- ]only|only (?:supports )?text|only supported by|no endpoints",
+    re.IGNORECASE,
+)
+_OF_A_PICTURE = re.compile(
+    r"format|media type|mime|size|dimension|too (?:large|many)|more than|\burls?\b", re.IGNORECASE
+)
+"""Words on one picture's faults, not on pictures as such."""
 _KEY_LIKE = re.compile(
     r"\b(?:sk|pk|key|xai|gsk|hf|r8)[-_][A-Za-z0-9_\-]{8,}|\bAIza[A-Za-z0-9_\-]{8,}|(?i:bearer)\s+[^\s\"',;}]+"
 )
@@ -113,19 +126,19 @@ def provider_sentence(body: bytes, key: str | None) -> str:
             title = re.search(r"<title[^>]*>(.*?)</title>", text, re.IGNORECASE | re.DOTALL)
             return plain(title.group(1), key) if title else ""
         return plain(text, key)
-    return plain(_message_in(data), key)
+    return plain(message_in(data), key)
 
 
-def _message_in(data: Any, depth: int = 0) -> str:
+def message_in(data: Any, depth: int = 0) -> str:
     """The most telling text in an error object of any vendor's shape."""
     if isinstance(data, str):
         return data
     if isinstance(data, list):
-        return _message_in(data[0], depth + 1) if data and depth < 4 else ""
+        return message_in(data[0], depth + 1) if data and depth < 4 else ""
     if not isinstance(data, dict) or depth > 4:
         return ""
     for name in ("error", "message", "detail", "msg", "errors", "error_description", "title"):
-        found = _message_in(data.get(name), depth + 1)
+        found = message_in(data.get(name), depth + 1)
         if found:
             # OpenRouter wraps the vendor's own words.
             raw = data.get("metadata", {}).get("raw") if isinstance(data.get("metadata"), dict) else None
@@ -158,6 +171,9 @@ def fault_for(status: int, sentence: str, codes: str, after: float, host: str) -
             status,
         )
         return Fault(error, sentence=sentence)
+    if status in _BLIND_STATUSES and takes_none(sentence):
+        error = ServiceError(f"The model at {host} takes no pictures.{said}", _EYES, "pictures", status)
+        return Fault(error, sentence=sentence)
     if status in RETRIED_STATUSES:
         kind: FaultKind = "rate" if status == 429 else "server"
         what = "is asked too often" if status == 429 else f"is in trouble (status {status})"
@@ -166,6 +182,14 @@ def fault_for(status: int, sentence: str, codes: str, after: float, host: str) -
     what, fix, kind = _REFUSALS.get(status, ("refused the request", "Check the settings of the model.", "request"))
     suffix = f" (status {status})" if status else ""
     return Fault(ServiceError(f"The service at {host} {what}{suffix}.{said}", fix, kind, status), sentence=sentence)
+
+
+_EYES = "Choose a model that sees pictures."
+
+
+def takes_none(sentence: str) -> bool:
+    """Whether a service says that its model is one for text only, and not that it cannot use this one picture."""
+    return bool(_PICTURES.search(sentence) and _TAKES_NONE.search(sentence) and not _OF_A_PICTURE.search(sentence))
 
 
 _REFUSALS: dict[int, tuple[str, str, FaultKind]] = {

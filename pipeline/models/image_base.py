@@ -19,6 +19,7 @@ from PIL import Image
 
 from .addresses import is_local_url
 from .endpoint import Endpoint
+from .error_bodies import body_fault
 from .exchange import Answer, Call, exchange
 from .faults import Fault, FaultKind, ServiceError, plain, quoted, status_fault
 from .limits import Limits, Route
@@ -160,14 +161,21 @@ class ImageHttpClient(Endpoint):
         answer = exchange(call, self._limits, deadline, cancel, progress)
         if answer.status != 200:
             raise self.fault(answer)
-        made = self.read(self._json(answer), lambda url: self._linked(url, deadline, cancel, progress))
+        data = self._json(answer)
+        if data.get("error"):
+            raise self._told(body_fault(data["error"], self.host, self._key), answer)
+        made = self.read(data, lambda url: self._linked(url, deadline, cancel, progress))
         return replace(made, data=self.checked(made.data))
 
     def fault(self, answer: Answer) -> Fault:
         """The fault for an answer with a status other than 200; what a safety filter says is a refusal."""
-        fault = status_fault(answer.status, answer.body, answer.headers, self.host, self._key)
+        return self._told(status_fault(answer.status, answer.body, answer.headers, self.host, self._key), answer)
+
+    def _told(self, fault: Fault, answer: Answer) -> Fault:
+        """The fault, or a refusal where the service's words are those of a safety filter."""
         said = f"{fault.sentence} {answer.body[:4000].decode('utf-8', 'replace')}".lower()
-        if answer.status in (400, 403, 422) and fault.error.kind != "money" and any(w in said for w in _FILTERED):
+        filtered = any(word in said for word in _FILTERED)
+        if filtered and fault.error.status in (0, 400, 403, 422) and fault.error.kind != "money":
             return self.refused(fault.sentence)
         return fault
 

@@ -12,7 +12,8 @@ from typing import Any, Literal
 
 from ..errors import CutReplyError, ReplyError
 from .base import Reply
-from .faults import Fault, ServiceError, error_codes, fault_for, plain, without_key
+from .error_bodies import body_fault
+from .faults import Fault, ServiceError, plain, without_key
 from .sse import EventReader
 
 Ending = Literal["", "stop", "cut", "filter", "refused"]
@@ -140,13 +141,7 @@ class ReplyReader:
 
     def fail(self, error: Any) -> None:
         """An error that came with status 200."""
-        message = error.get("message", "") if isinstance(error, dict) else error
-        sentence = plain(str(message), self._key)
-        code = error.get("code") if isinstance(error, dict) else None
-        text = str(code or "")
-        status = int(text) if text.isdigit() and len(text) == 3 else _STATUS_OF.get(text.lower(), 0)
-        kind = str(error.get("type") or error.get("status") or "").lower() if isinstance(error, dict) else ""
-        self._error = fault_for(status or _STATUS_OF.get(kind, 0), sentence, error_codes(error), 0.0, self._host)
+        self._error = body_fault(error, self._host, self._key)
 
     def broken(self) -> Fault:
         """The reply ended in the middle."""
@@ -183,36 +178,6 @@ class ReplyReader:
             cached_tokens=self.cached_tokens,
             written_tokens=self.written_tokens,
         )
-
-
-_STATUS_OF = {
-    "insufficient_quota": 402,
-    "billing_hard_limit_reached": 402,
-    "billing_error": 402,
-    "rate_limit_exceeded": 429,
-    "rate_limit_error": 429,
-    "resource_exhausted": 429,
-    "server_error": 500,
-    "internal_server_error": 500,
-    "internal": 500,
-    "api_error": 500,
-    "unavailable": 503,
-    "overloaded_error": 529,
-    "timeout": 504,
-    "timeout_error": 504,
-    "deadline_exceeded": 504,
-    "invalid_api_key": 401,
-    "authentication_error": 401,
-    "unauthenticated": 401,
-    "permission_error": 403,
-    "permission_denied": 403,
-    "model_not_found": 404,
-    "not_found_error": 404,
-    "not_found": 404,
-    "request_too_large": 413,
-    "invalid_request_error": 400,
-    "invalid_argument": 400,
-}
 
 
 def count(value: Any) -> int:

@@ -128,6 +128,30 @@ def test_stop_ends_the_wait_and_what_was_answered_is_kept() -> None:
     assert not ours.paste_answer.poll()
 
 
+def test_stopped_in_the_middle_the_former_room_is_put_back_in_slices(monkeypatch: pytest.MonkeyPatch) -> None:
+    from code_as_room.pipeline.models.builtin.client import BuiltinClient
+    from code_as_room.pipeline.stages import all_stages
+
+    by_chat = clients.current_client
+    monkeypatch.setattr(clients, "current_client", BuiltinClient)
+    driver.start(bpy.context.scene, [s for s in all_stages() if s.id < "s07"])
+    assert driver.run_blocking().problem is None
+    before = bpy.data.texts["room.py"].as_string()
+    monkeypatch.setattr(clients, "current_client", by_chat)
+    driver.start(bpy.context.scene, [s for s in all_stages() if s.id == "s03_layout"], again=True, fresh=True)
+    tick_until(by_hand.waiting)
+    assert bpy.data.texts["room.py"].as_string() != before
+    driver.stop()
+    phases = []
+    while driver.is_running():
+        driver._tick()
+        phases.append(driver._job.phase if driver._job is not None else "over")
+        time.sleep(0.01)
+    assert phases.count("putting the room back") > 1, "one mesh a slice, not all at once"
+    assert bpy.data.texts["room.py"].as_string() == before
+    assert not [mesh.name for mesh in bpy.data.meshes if mesh.users == 0]
+
+
 def test_a_question_that_is_skipped_and_needed_ends_the_stage_with_a_sentence() -> None:
     start("s01_analysis")
     tick_until(by_hand.waiting)

@@ -175,8 +175,6 @@ def errors_inside(vendor: type[Vendor]) -> Iterator[Case]:
     ]
     for number, (error, kinds) in enumerate(errors):
         body = {"error": error, **({"type": "error"} if vendor.name == "anthropic" else {})}
-        # An image service's own words are not looked for in a good status; it is an error all the same.
-        kinds = kinds if vendor.chat else frozenset()
         yield Case("error inside", f"whole {number}", replies(200, body), kinds=kinds)
         if not vendor.chat:
             continue

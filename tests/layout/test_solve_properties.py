@@ -188,9 +188,7 @@ def test_a_table_may_stand_in_the_missing_corner_of_a_sofa() -> None:
 def test_a_thing_in_a_corner_that_is_cut_off_comes_to_rest() -> None:
     """Two walls there push it one against the other, each time by less."""
     floor = [(-2.5, -2.0), (2.5, -2.0), (2.5, 1.2), (1.6, 2.0), (-2.5, 2.0)]
-    walls = [
-        WallLine(id=f"w{i}", start=floor[i], end=floor[(i + 1) % 5], height=2.6, thickness=0.12) for i in range(5)
-    ]
+    walls = [WallLine(id=f"w{i}", start=floor[i], end=floor[(i + 1) % 5], height=2.6, thickness=0.12) for i in range(5)]
     thing = ProxyLine(id="t0", category="thing", centre=(1.5, 2.0625, 0.4), size=(0.5, 0.875, 0.8), yaw=90.0)
     layout = Layout(room=RoomLine(size=(5.0, 4.0, 2.6), floor=floor), walls=walls, proxies=[thing])
     solved, _ = solve(layout, NONE, FREE, {})

@@ -199,6 +199,13 @@ def test_a_huge_reply_is_cut_off(make_peer: Any) -> None:
         (400, {"error": {"message": "no", "code": "content_policy_violation"}}, "refusal", 1),
         (404, {"error": {"message": "no such model"}}, "model", 1),
         (503, {"error": {"message": "overloaded"}}, "server", 2),
+        # Some services answer 200, and tell the error in the body.
+        (200, {"error": {"message": "Insufficient credits", "code": 402}}, "money", 1),
+        (200, {"error": {"message": "You exceeded your current quota", "type": "insufficient_quota"}}, "money", 1),
+        (200, {"error": {"message": f"Incorrect API key {KEY}", "code": "invalid_api_key"}}, "key", 1),
+        (200, {"error": {"message": "Blocked by our moderation system"}}, "refusal", 1),
+        (200, {"error": {"message": "slow down", "code": 429}}, "rate", 2),
+        (200, {"error": "Insufficient credits, says the account"}, "money", 1),
     ],
 )
 def test_statuses(make_peer: Any, status: int, body: dict[str, Any], kind: str, calls: int) -> None:
@@ -209,6 +216,8 @@ def test_statuses(make_peer: Any, status: int, body: dict[str, Any], kind: str, 
             asked(client_of(peer))
         assert caught.value.kind == kind and len(peer.received) == calls
         assert "secret" not in f"{caught.value.message} {caught.value.fix}"
+        said = body["error"] if isinstance(body["error"], str) else body["error"]["message"]
+        assert said.replace(KEY, "[key]") in caught.value.message, "the service's own sentence is told"
 
 
 @pytest.mark.parametrize(

@@ -83,9 +83,11 @@ def texts(parts):
 def test_every_service_is_sent_the_shared_part_first_and_the_whole_text():
     marked = mark_shared(prompts())[1]
     claude = AnthropicClient("https://api.anthropic.com", "claude-sonnet-4-5").body(marked, Habits(most_tokens=10))
-    content = claude["messages"][0]["content"]
-    assert [block["type"] for block in content] == ["text", "image", "text"] and texts(content) == marked.text
-    assert content[0]["cache_control"] == {"type": "ephemeral"} and "cache_control" not in content[2]
+    system, content = claude["system"], claude["messages"][0]["content"]
+    assert [block["type"] for block in content] == ["image", "text"] and texts([*system, *content]) == marked.text
+    assert (
+        len(system) == 1 and system[0]["cache_control"] == {"type": "ephemeral"} and "cache_control" not in content[1]
+    )
     gemini = GeminiClient("https://g.example", "gemini-2.5-pro").body(marked, Habits())["contents"][0]["parts"]
     assert [list(part) for part in gemini] == [["text"], ["inline_data"], ["text"]] and texts(gemini) == marked.text
     openai = OpenAIStyleClient("https://api.openai.com/v1", "gpt-5").body(marked, Habits())["messages"][0]["content"]
@@ -94,8 +96,8 @@ def test_every_service_is_sent_the_shared_part_first_and_the_whole_text():
     router = OpenAIStyleClient("https://openrouter.ai/api/v1", "anthropic/claude-sonnet-4.5")
     assert router.body(marked, Habits())["messages"][0]["content"][0]["cache_control"] == {"type": "ephemeral"}
     alone = prompts(1)[0]
-    blocks = AnthropicClient("https://a.example", "m").body(alone, Habits(most_tokens=1))["messages"][0]["content"]
-    assert [block["type"] for block in blocks] == ["image", "text"]
+    body = AnthropicClient("https://a.example", "m").body(alone, Habits(most_tokens=1))
+    assert [block["type"] for block in body["messages"][0]["content"]] == ["image", "text"] and "system" not in body
 
 
 USAGE = {"input_tokens": 100, "cache_creation_input_tokens": 0, "cache_read_input_tokens": 900, "output_tokens": 10}

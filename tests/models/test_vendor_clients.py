@@ -323,7 +323,7 @@ def test_an_ollama_without_schemas_is_asked_for_any_json(peer, a_prompt):
         (Gemini, 404, Gemini.error("NOT_FOUND", "models/nope is not found for API version v1beta"), "model"),
         (Gemini, 429, Gemini.error("RESOURCE_EXHAUSTED", "You exceeded your current quota"), "money"),
         (Ollama, 404, Ollama.error("", "model 'nope' not found"), "model"),
-        (Ollama, 400, Ollama.error("", '"nope" does not support images'), "request"),
+        (Ollama, 400, Ollama.error("", '"nope" does not support images'), "pictures"),
     ],
 )
 def test_refusals_are_named_in_the_services_words_and_not_tried_again(vendor, status, body, kind, peer, a_prompt):

@@ -81,7 +81,8 @@ def test_an_answer_over_its_limit_is_cut(llama: str) -> None:
 def test_a_text_model_says_that_it_takes_no_pictures(llama: str) -> None:
     with pytest.raises(ServiceError) as caught:
         client(llama).answer(replace(QUESTION, images=(PICTURE,)), threading.Event())
-    assert "image" in caught.value.message and caught.value.fix
+    assert "image" in caught.value.message and "sees pictures" in caught.value.fix
+    assert caught.value.kind == "pictures", "told apart from a server in trouble, and not tried again"
 
 
 def test_the_connection_test_and_the_list_know_the_model(llama: str) -> None:

@@ -38,13 +38,13 @@ KINDS = (
 
 
 def prompts() -> list[Prompt]:
-    """A prompt for each type of answer, some without pictures."""
+    """A prompt for each type of answer, some without pictures, and one whose beginning others share."""
     plain = a_prompt()
     kinds = [
         replace(plain, schema_name=kind.__name__, schema=strict_schema(kind), images=(PICTURE,) * (number % 3))
         for number, kind in enumerate(KINDS)
     ]
-    return [plain, *kinds]
+    return [plain, replace(plain, shared=len(plain.text) // 2), *kinds]
 
 
 def sent(vendor: type[Vendor], peer: Peer) -> list[dict[str, Any]]:
