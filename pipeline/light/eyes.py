@@ -15,7 +15,7 @@ import numpy as np
 
 from ..artifacts.layout import CameraLine
 from ..geometry.polygon import Floats
-from .panorama import Panorama, panoramas, viewing_space
+from .panorama import Panorama, open_leaves, panoramas, viewing_space
 from .space import Bools, Space, from_walls, inside
 
 EYES = ("eye_1", "eye_2")
@@ -141,17 +141,18 @@ def _inner_corners(floor: Floats, margin: float) -> Floats:
 
 
 def _free(space: Space, places: Floats, height: float, ease: float) -> Bools:
-    """Places at which nobody would stand in furniture, in a partition, or with the eyes in something that hangs."""
+    """Places at which nobody would stand in furniture, in a partition, in an open door's leaf, or with the eyes in something that hangs."""
     free = np.ones(len(places), dtype=bool)
     m = ease * _FROM_THINGS
     for p in space.layout.proxies:
         low, high = p.centre[2] - p.size[2] / 2, p.centre[2] + p.size[2] / 2
         if high < _LOW or low > height + 0.25:
             continue
-        c, s = math.cos(math.radians(p.yaw)), math.sin(math.radians(p.yaw))
-        offset = places - np.array(p.centre[:2])
-        x, y = c * offset[:, 0] + s * offset[:, 1], c * offset[:, 1] - s * offset[:, 0]
+        x, y = _turned(places - np.array(p.centre[:2]), p.yaw)
         free &= (np.abs(x) > p.size[0] / 2 + m) | (np.abs(y) > p.size[1] / 2 + m)
+    for _, centre, half, yaw in open_leaves(space.layout):
+        x, y = _turned(places - np.array(centre[:2]), yaw)
+        free &= (np.abs(x) > half[0] + m) | (np.abs(y) > half[1] + m)
     for wall in space.walls:
         offset = places - np.array(wall.start)
         along = offset @ np.array(wall.along)
@@ -159,6 +160,12 @@ def _free(space: Space, places: Floats, height: float, ease: float) -> Bools:
         margin = 0.8 * ease * _FROM_WALL
         free &= (along < -margin) | (along > wall.length + margin) | (off > margin)
     return free
+
+
+def _turned(offset: Floats, yaw: float) -> tuple[Floats, Floats]:
+    """Offsets (N, 2) from something's middle along its own width and depth."""
+    c, s = math.cos(math.radians(yaw)), math.sin(math.radians(yaw))
+    return c * offset[:, 0] + s * offset[:, 1], c * offset[:, 1] - s * offset[:, 0]
 
 
 def _looks(view: Panorama, space: Space) -> list[Eye]:

@@ -14,6 +14,7 @@ from ..artifacts.common import ImageBox
 from ..geometry.camera import Projector
 from ..geometry.polygon import Floats
 from ..picture import ReferencePicture
+from ..picture_tone import developed
 from .space import FLOOR, WALLS, Bools, Space, from_walls, inside
 from .tone import linear, luminance
 
@@ -66,7 +67,7 @@ class Places:
 
 def visible_places(space: Space, camera: CameraModel, picture: ReferencePicture) -> Places:
     """Places on floor and walls that the picture shows, spread evenly, at most `MOST_PLACES` of each."""
-    pixels = small(picture)
+    pixels = small(picture, meant=True)
     points, normals, surface = _floor_places(space)
     bare = surface == FLOOR
     floor = _seen(space, camera, pixels, points[bare], normals[bare], surface[bare])
@@ -88,10 +89,14 @@ def floor_and_walls(space: Space, each: int = 60) -> tuple[Floats, Floats, Float
     return tuple(np.concatenate([p[i] for p in parts]) for i in range(3))
 
 
-@functools.lru_cache(maxsize=1)
-def small(picture: ReferencePicture) -> Floats:
-    """The picture as linear colours (height, width, 3), at most `LONG_SIDE` pixels; not to be written into."""
-    image = Image.fromarray(picture.pixels())
+@functools.lru_cache(maxsize=2)
+def small(picture: ReferencePicture, meant: bool = False) -> Floats:
+    """The picture as linear colours (height, width, 3), at most `LONG_SIDE` pixels; not to be written into.
+
+    Args:
+        meant: the colours that things had, where the picture is washed out (`picture_tone`).
+    """
+    image = Image.fromarray(developed(picture) if meant else picture.pixels())
     image.thumbnail((LONG_SIDE, LONG_SIDE), Image.Resampling.BOX)
     found = linear(np.asarray(image, dtype=float) / 255.0)
     found.flags.writeable = False

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..artifacts.layout import DoorLine, ProxyLine, WallLine
+from ..artifacts.layout import DoorLine, Layout, ProxyLine, WallLine
 from ..geometry.polygon import Floats
 from .space import FLAT, FLOOR, SKY, WALLS, Bools, Boxes, Ints, Space
 
@@ -60,8 +60,7 @@ def viewing_space(space: Space) -> Space:
     """A room as eyes meet it: with curtains, lamps and plants, with open doors' leaves and with the ends of partitions."""
     there = set(space.boxes.owners)
     more = [_row(p) for p in space.layout.proxies if p.id not in there and p.size[2] >= FLAT and max(p.size) > _WIDE]
-    walls = {w.id: w for w in space.layout.walls}
-    more += [_leaf(d, walls[d.wall]) for d in space.layout.doors if d.open and d.wall in walls]
+    more += open_leaves(space.layout)
     more += [end for w in space.layout.walls if w.partition for end in _ends(w)]
     if not more:
         return space
@@ -83,6 +82,12 @@ _Row = tuple[str, tuple[float, float, float], tuple[float, float, float], float]
 
 def _row(p: ProxyLine) -> _Row:
     return (p.id, p.centre, (p.size[0] / 2, p.size[1] / 2, p.size[2] / 2), p.yaw)
+
+
+def open_leaves(layout: Layout) -> list[_Row]:
+    """The leaves of doors that stand open: id, centre, half sizes in metres, yaw in degrees."""
+    walls = {w.id: w for w in layout.walls}
+    return [_leaf(d, walls[d.wall]) for d in layout.doors if d.open and d.wall in walls]
 
 
 def _leaf(door: DoorLine, wall: WallLine) -> _Row:

@@ -57,7 +57,7 @@ def shell_colours(layout: Layout, camera: CameraModel, picture: ReferencePicture
         if len(here) >= 5 and wall.id not in seen:
             seen[wall.id] = (calm(to_code(np.minimum(_paint(here) * gains, 0.86))), len(here))
     _walls(found, seen)
-    tops = top_colour(layout, camera, small(picture))
+    tops = top_colour(layout, camera, small(picture, meant=True))
     if tops is not None:
         found.tops = to_code(np.minimum(tops * gains, 0.9))
     return found

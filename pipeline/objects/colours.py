@@ -20,6 +20,7 @@ from ..artifacts.objects import MeasuredColour
 from ..geometry.camera import project
 from ..geometry.footprint import box_corners
 from ..picture import ReferencePicture
+from ..picture_tone import developed
 from .outlines import Floats as Floats
 from .outlines import area, fitted, grown, not_around, some, wider
 from .outlines import convex_hull as convex_hull
@@ -55,7 +56,7 @@ class ColourMeter:
         layout: Layout,
         boxes: Mapping[str, ImageBox] | None = None,
     ) -> None:
-        self._pixels = _linear(_small(picture.pixels()))
+        self._pixels = _linear(_small(developed(picture)))
         self._camera = camera
         self._layout = layout
         self._boxes = boxes or {}

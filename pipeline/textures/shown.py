@@ -17,6 +17,7 @@ from ..artifacts.textures import TextureQuality
 from ..geometry.camera import project
 from ..objects.colours import convex_hull
 from ..picture import ReferencePicture
+from ..picture_tone import developed
 from .drawings import is_drawing
 from .occluders import Solid, hidden_pixels, solids_of
 from .pixels import Mask, Pixels, to_linear
@@ -63,8 +64,8 @@ class Shown:
 
     @cached_property
     def picture(self) -> Pixels:
-        """The picture in linear light."""
-        return to_linear(self.reference.pixels())
+        """The picture in linear light, with the colours that things had."""
+        return to_linear(developed(self.reference))
 
     @cached_property
     def drawn(self) -> bool:

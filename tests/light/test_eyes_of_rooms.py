@@ -10,7 +10,7 @@ from code_as_room.pipeline.artifacts.camera import CameraModel
 from code_as_room.pipeline.artifacts.common import ImagePoint
 from code_as_room.pipeline.artifacts.layout import CameraLine, DoorLine, Layout, RoomLine, WallLine
 from code_as_room.pipeline.geometry.camera import project
-from code_as_room.pipeline.light.panorama import viewing_space
+from code_as_room.pipeline.light.panorama import open_leaves, viewing_space
 from code_as_room.pipeline.light.space import FLOOR, WALLS, inside, space_of
 from code_as_room.pipeline.light.views import LEAST_FREE, cut_height, eye_cameras, top_camera
 from hypothesis import given, settings
@@ -180,3 +180,19 @@ def test_an_open_leaf_is_in_the_way_of_the_eyes() -> None:
         distance, met = picture(layout, line)
         leaf = np.array([m == "door_1" for m in met]).reshape(distance.shape)
         assert not (leaf & (distance < 1.0))[:, 15:45].any() and leaf.mean() < 0.25
+
+
+def test_nobody_stands_in_an_open_leaf() -> None:
+    layout = rectangle(4.4, 3.9)
+    layout.doors.append(DoorLine(id="door_1", wall="wall_1", start=(2.2, -1.82), end=(2.2, -1.0), height=2.0, open=70))
+    layout.proxies.append(thing("bed_1", "bed", (-1.6, 0.9), (1.0, 2.0, 1.6)))
+    space = space_of(layout)
+    lines, _ = eye_cameras(space)
+    assert lines
+    _, centre, half, yaw = open_leaves(layout)[0]
+    c, s = math.cos(math.radians(yaw)), math.sin(math.radians(yaw))
+    for line in lines:
+        at = np.array(line.matrix).reshape(4, 4)[:3, 3]
+        dx, dy = at[0] - centre[0], at[1] - centre[1]
+        within = abs(c * dx + s * dy) < half[0] + 0.02 and abs(c * dy - s * dx) < half[1] + 0.02
+        assert not within, line.id

@@ -67,7 +67,7 @@ def _clear(tree: Any, surface: Any, colour: tuple[float, float, float], share: f
     glossy = new_node(tree, "BsdfGlossy", {"Color": (1.0, 1.0, 1.0), "Roughness": 0.01})
     # A Fresnel node takes the far side of a pane for the inside of solid glass, which is black at its rims.
     facing = out(new_node(tree, "LayerWeight", {"Blend": 0.1}), "Facing")
-    edge = new_node(tree, "MapRange", {"Value": facing, "To Min": 0.04, "To Max": 0.9})
+    edge = new_node(tree, "MapRange", {"Value": facing, "To Min": 0.02, "To Max": 0.3})
     clear = _mixed(tree, out(edge, "Result"), out(straight, "BSDF"), out(glossy, "BSDF"))
     return _mixed(tree, share, surface, clear)
 

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Pictures that were shown through a filmic view transform, and the colours that things had before it.
+
+Renders are mostly shown through a transform that keeps bright light from burning out (AgX, Filmic): blacks become grey, and
+whatever is bright loses most of its colour. An eye takes that for the picture's manner and sees strong colours all the same.
+Taken as base colours they would go through a transform again, and the room would look washed out. So where a picture's range
+is narrow as only such a transform leaves it, its colours are led back through AgX; bright greys stay as bright as they are.
+
+The matrices were fitted to 1500 random colours as Blender 5.0 shows them (AgX, Medium High Contrast): the colours come back to
+within 3 % for nine of ten. The curve of greys is that of `light.tone`.
+"""
+
+from __future__ import annotations
+
+import functools
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, ImageFilter
+
+from .light.tone import AGX, MEDIUM_HIGH, linear, luminance, scene_light
+from .picture import ReferencePicture
+
+Floats = NDArray[np.float64]
+
+_BEFORE = np.linalg.inv(np.array(((0.6974, 0.2464, 0.0562), (0.0841, 0.8020, 0.1139), (0.0611, 0.1302, 0.8087))))
+_AFTER = np.linalg.inv(np.array(((1.3893, -0.3213, -0.0680), (-0.1045, 1.1396, -0.0351), (-0.1016, -0.1571, 1.2587))))
+"""What AgX does to linear light before its curve, and to what the curve gives, the other way round."""
+_SIDE = 512
+_MARGIN = 0.08
+"""Part of the picture at each edge that may be a frame or the paper."""
+_BLACK = (28.0, 52.0)
+_WHITE = (238.0, 248.0)
+"""Values of the darkest and the brightest that a picture has: from where to where it counts as washed out."""
+_KEPT = 75.0
+"""Per cent of the picture that are darker than what keeps its brightness."""
+
+
+def wash(picture: ReferencePicture) -> float:
+    """How much a picture looks like one that was shown through a filmic transform: 0 not at all, 1 certainly."""
+    image = Image.fromarray(picture.pixels())
+    image.thumbnail((_SIDE, _SIDE))
+    # A single pixel of black is noise, an edge that was sharpened, or a letter.
+    values = np.asarray(image.filter(ImageFilter.GaussianBlur(1.0)), dtype=float)
+    high, wide = (round(_MARGIN * n) for n in values.shape[:2])
+    inner = luminance(values[high : values.shape[0] - high, wide : values.shape[1] - wide]).ravel()
+    if not inner.size:
+        return 0.0
+    black, white = np.percentile(inner, (0.3, 99.7))
+    dark = (black - _BLACK[0]) / (_BLACK[1] - _BLACK[0])
+    bright = (_WHITE[1] - white) / (_WHITE[1] - _WHITE[0])
+    return float(np.clip(dark, 0.0, 1.0) * np.clip(bright, 0.0, 1.0))
+
+
+@functools.lru_cache(maxsize=2)
+def developed(picture: ReferencePicture) -> NDArray[np.uint8]:
+    """The picture's pixels (height, width, 3), sRGB, with the colours that things had; the picture's own where it is not washed out.
+
+    Not to be written into.
+    """
+    pixels = picture.pixels()
+    share = wash(picture)
+    if share > 0.0:
+        screen = pixels.astype(float) / 255.0
+        given, meant = linear(screen), _led_back(screen)
+        kept = np.percentile(luminance(given), _KEPT) / max(float(np.percentile(luminance(meant), _KEPT)), 1e-6)
+        pixels = _encoded(share * kept * meant + (1.0 - share) * given)
+    pixels.flags.writeable = False
+    return pixels
+
+
+def _led_back(screen: Floats) -> Floats:
+    """The linear light of AgX's pixels (0..1)."""
+    curve = np.clip(screen @ _AFTER.T, 0.0, 1.0)
+    light: Floats = np.maximum(scene_light(curve, AGX, MEDIUM_HIGH) @ _BEFORE.T, 0.0)
+    return light
+
+
+def _encoded(light: Floats) -> NDArray[np.uint8]:
+    value = np.clip(light, 0.0, 1.0)
+    screen = np.where(value <= 0.0031308, value * 12.92, 1.055 * value ** (1 / 2.4) - 0.055)
+    pixels: NDArray[np.uint8] = np.round(screen * 255.0).astype(np.uint8)
+    return pixels
