@@ -134,9 +134,9 @@ class ViewLine(Artifact):
 
 
 class CameraLine(Artifact):
-    """`camera(id, kind, matrix=, fov_y=, ortho_height=, image_size=, principal=, near=)`, fields as `CameraModel`.
+    """`camera(id, kind, matrix=, fov_y=, ortho_height=, image_size=, principal=, near=, stops=)`, fields as `CameraModel`.
 
-    What is nearer than `near` metres is cut off.
+    What is nearer than `near` metres is cut off; its pictures are `stops` brighter than the `view` line says.
     """
 
     id: str
@@ -147,6 +147,7 @@ class CameraLine(Artifact):
     image_size: tuple[int, int] = (1024, 1024)
     principal: Metres2 = (500.0, 500.0)
     near: float = 0.02
+    stops: float = 0.0
 
 
 Line = (

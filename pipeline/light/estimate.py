@@ -15,6 +15,7 @@ import numpy as np
 
 from ..artifacts.layout import LightLine
 from ..geometry.polygon import Floats
+from .room_parts import part_of
 from .space import SKY, Space
 
 RAYS = 24
@@ -57,12 +58,16 @@ def irradiance(space: Space, lights: Sequence[LightLine], sky: float, places: Fl
     for index, light in enumerate(lights):
         bounced[index, met] = albedo[met] * _direct(space, light, spots, facing[met], 1, chance)
     once = bounced.reshape(len(lights), count, RAYS).mean(axis=2)
-    given_back = min(_MOST_GIVEN_BACK, float(albedo.mean()))
     seen = (~met).reshape(count, RAYS).mean(axis=1)
     from_sky = math.pi * sky * seen
-    # What bounces on is spread over the room evenly enough to be a mean.
-    further = once.mean(axis=1, keepdims=True) * _series(given_back, _BOUNCES - 1) if count else once
-    spread = float(from_sky.mean()) * _series(given_back, _BOUNCES) if count else 0.0
+    further, spread = np.zeros_like(once), np.zeros(count)
+    # What bounces on is spread over a part of the room evenly enough to be a mean.
+    parts = part_of(space, places)
+    for part in np.unique(parts):
+        here = parts == part
+        given_back = min(_MOST_GIVEN_BACK, float(albedo.reshape(count, RAYS)[here].mean()))
+        further[:, here] = once[:, here].mean(axis=1, keepdims=True) * _series(given_back, _BOUNCES - 1)
+        spread[here] = float(from_sky[here].mean()) * _series(given_back, _BOUNCES)
     return Arriving(direct + once + further, from_sky + spread, direct)
 
 

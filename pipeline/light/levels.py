@@ -16,9 +16,10 @@ from .measure import LEAST_PLACES, Places
 from .space import Bools, Space
 from .tone import scene_light
 
-_LEAST, _MOST = 0.5, 2.0
+_LEAST, _MOST = 0.5, 3.0
 """Times the light that all parts would have alike."""
 _ROUNDS = 2
+_BESIDE = 0.3  # metres round a panel that are lit by it as what is under it
 
 
 def levelled(
@@ -62,6 +63,6 @@ def is_fill(light: LightLine) -> bool:
 
 def below(light: LightLine, points: Floats) -> Bools:
     """Which places (N, 3) lie under a panel that looks down."""
-    wide, deep = light.size / 2 + 0.1, (light.size_y or light.size) / 2 + 0.1
+    wide, deep = light.size / 2 + _BESIDE, (light.size_y or light.size) / 2 + _BESIDE
     found: Bools = (np.abs(points[:, 0] - light.at[0]) < wide) & (np.abs(points[:, 1] - light.at[1]) < deep)
     return found

@@ -21,13 +21,15 @@ from ..geometry.polygon import Floats
 from ..program.prelude.shape import Shape
 from .estimate import irradiance
 from .lamps import bulbs
-from .space import Bools, Space, Wall, inside
+from .room_parts import rectangles
+from .space import Space, Wall, inside
 
 EVEN = 3.0
 """Watts a square metre on the floor."""
 _INTO_ROOM = 0.03  # metres that a window's light stands off the wall's inner face, so that no frame swallows it
 _UNDER_CEILING = 0.015  # metres
-_MARGIN = 0.1  # metres between the light under the ceiling and the walls, whose upper ends it lights
+_MARGIN, _SHARE = 0.3, 0.12
+"""Between the light under the ceiling and the walls: metres, and of a narrow room's side; nearer it burns a rim into them."""
 _REACH = 0.6  # metres from a lamp at which its irradiance is what its style says
 _GLASS = 0.92  # of a window's width and height that is not frame
 _SUN_HEIGHT = 6.0  # metres; where the sun is drawn
@@ -136,7 +138,7 @@ def make_lights(
         made.append(_sun_light(shining, how, taken))
     lit: list[str] = []
     for lamp in lamps:
-        found = _lamp_lights(lamp, shapes.get(lamp.id, ()), how, taken)
+        found = lamp_lights(lamp, shapes.get(lamp.id, ()), style, taken)
         made += found
         lit += [lamp.id] if found else []
     # The world's radiance S gives pi S; its part reaches the room through windows only.
@@ -190,7 +192,7 @@ def _fills(space: Space, taken: set[str]) -> list[LightLine]:
     z = space.height - _UNDER_CEILING
     panels = []
     for x0, x1, y0, y1 in rectangles(space):
-        width, depth = max(x1 - x0 - 2 * _MARGIN, 0.3), max(y1 - y0 - 2 * _MARGIN, 0.3)
+        width, depth = (max(side - 2 * min(_MARGIN, _SHARE * side), 0.3) for side in (x1 - x0, y1 - y0))
         at = ((x0 + x1) / 2, (y0 + y1) / 2, z)
         panels.append(
             LightLine(id=_free("ceiling_light", taken), kind="area", at=at, energy=1.0, size=width, size_y=depth)
@@ -199,67 +201,6 @@ def _fills(space: Space, taken: set[str]) -> list[LightLine]:
         at = (float(low[0] + high[0]) / 2, float(low[1] + high[1]) / 2, z)
         panels.append(LightLine(id=_free("ceiling_light", taken), kind="area", at=at, energy=1.0, size=0.5, size_y=0.5))
     return panels
-
-
-def rectangles(space: Space) -> list[tuple[float, float, float, float]]:
-    """The floor as a few large rectangles (x from, to, y from, to) that neither leave it nor cross a partition."""
-    xs, ys = _cuts(space, 0), _cuts(space, 1)
-    cells = np.zeros((len(xs) - 1, len(ys) - 1), dtype=bool)
-    for i in range(len(xs) - 1):
-        for j in range(len(ys) - 1):
-            middle = ((xs[i] + xs[i + 1]) / 2, (ys[j] + ys[j + 1]) / 2)
-            within = any(low < middle[axis] < high for axis, low, high in _long_partitions(space))
-            cells[i, j] = not within and bool(inside(space.floor, np.array([middle]))[0])
-    found: list[tuple[float, float, float, float]] = []
-    while cells.any() and len(found) < 6:
-        area, best = max((_largest(cells, xs, ys, i, j) for i, j in np.argwhere(cells)), key=lambda item: item[0])
-        i0, i1, j0, j1 = best
-        cells[i0:i1, j0:j1] = False
-        if area > 1.0 or not found:
-            found.append((xs[i0], xs[i1], ys[j0], ys[j1]))
-    return found
-
-
-def _cuts(space: Space, axis: int) -> list[float]:
-    """Where the room is cut along an axis: its corners, and its long partitions."""
-    low, high = float(space.floor[:, axis].min()), float(space.floor[:, axis].max())
-    marks = [float(v) for v in space.floor[:, axis]]
-    marks += [face for across, *faces in _long_partitions(space) if across == axis for face in faces]
-    kept: list[float] = []
-    for mark in sorted({low, high, *marks}):
-        if not kept or mark - kept[-1] > 0.02:
-            kept.append(mark)
-    return kept if len(kept) > 1 else [low, high]
-
-
-def _long_partitions(space: Space) -> list[tuple[int, float, float]]:
-    """Partitions that part the room: the axis across each, and where its two faces are on it."""
-    faces: dict[str, list[Wall]] = {}
-    for wall in space.walls:
-        faces.setdefault(wall.id, []).append(wall)
-    found = []
-    for pair in faces.values():
-        for axis in (0, 1):
-            span = float(np.ptp(space.floor[:, 1 - axis]))
-            if len(pair) == 2 and abs(pair[0].normal[axis]) > 0.95 and pair[0].length > 0.6 * span:
-                low, high = sorted(wall.start[axis] for wall in pair)
-                found.append((axis, low, high))
-    return found
-
-
-def _largest(cells: Bools, xs: list[float], ys: list[float], i: int, j: int) -> tuple[float, tuple[int, int, int, int]]:
-    """The largest rectangle of cells whose lower left one is (i, j)."""
-    best, found = 0.0, (i, i + 1, j, j + 1)
-    reach = cells.shape[1]
-    for i1 in range(i + 1, cells.shape[0] + 1):
-        column = cells[i1 - 1, j:reach]
-        reach = j + (int(np.argmin(column)) if not column.all() else len(column))
-        if reach <= j:
-            break
-        area = (xs[i1] - xs[i]) * (ys[reach] - ys[j])
-        if area > best:
-            best, found = area, (i, i1, j, reach)
-    return best, found
 
 
 def _scaled(space: Space, lights: list[LightLine], wanted: float) -> list[LightLine]:
@@ -309,9 +250,13 @@ def _sun_light(sun: Sun, how: Style, taken: set[str]) -> LightLine:
     )
 
 
-def _lamp_lights(lamp: ProxyLine, shapes: Sequence[Shape], how: Style, taken: set[str]) -> list[LightLine]:
-    """The lights of a lamp; hanging and standing lamps are stronger than those on a table."""
-    places = bulbs(lamp, shapes)
+def lamp_lights(lamp: ProxyLine, shapes: Sequence[Shape], style: LightStyle, taken: set[str]) -> list[LightLine]:
+    """The lights of a lamp in a style; hanging and standing lamps are stronger than those on a table.
+
+    Args:
+        taken: ids that are not free; those of the lights are added.
+    """
+    places, how = bulbs(lamp, shapes), STYLES[style]
     kind = 2.5 if lamp.placement == "ceiling" else 1.4 if lamp.size[2] > 1.0 else 1.0
     watts = how.lamps * EVEN * 4 * math.pi * _REACH**2 * kind / math.sqrt(len(places) or 1) / max(1, len(places)) ** 0.5
     result = []

@@ -14,7 +14,7 @@ from ..artifacts.common import ImageBox
 from ..geometry.camera import Projector
 from ..geometry.polygon import Floats
 from ..picture import ReferencePicture
-from ..picture_tone import developed
+from .developed import developed
 from .space import FLOOR, WALLS, Bools, Space, from_walls, inside
 from .tone import linear, luminance
 
@@ -94,7 +94,7 @@ def small(picture: ReferencePicture, meant: bool = False) -> Floats:
     """The picture as linear colours (height, width, 3), at most `LONG_SIDE` pixels; not to be written into.
 
     Args:
-        meant: the colours that things had, where the picture is washed out (`picture_tone`).
+        meant: the colours that things had, where the picture is washed out (`developed`).
     """
     image = Image.fromarray(developed(picture) if meant else picture.pixels())
     image.thumbnail((LONG_SIDE, LONG_SIDE), Image.Resampling.BOX)

@@ -19,8 +19,8 @@ from ..artifacts.layout import Layout, ProxyLine
 from ..artifacts.objects import MeasuredColour
 from ..geometry.camera import project
 from ..geometry.footprint import box_corners
+from ..light.developed import developed
 from ..picture import ReferencePicture
-from ..picture_tone import developed
 from .outlines import Floats as Floats
 from .outlines import area, fitted, grown, not_around, some, wider
 from .outlines import convex_hull as convex_hull

@@ -79,7 +79,7 @@ _POSITIONAL = {
 _FINE = {"matrix", "fov_y", "ortho_height"}
 # Fields that are printed only when they differ from their default; all others are always printed.
 _QUIET = {"partition", "parent", "label", "shape", "color", "target", "fov_y", "ortho_height", "principal",
-          "near", "size_y", "kelvin", "look", "ceiling", "cut"}  # fmt: skip
+          "near", "stops", "size_y", "kelvin", "look", "ceiling", "cut"}  # fmt: skip
 
 
 @dataclass(frozen=True)

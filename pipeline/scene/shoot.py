@@ -75,6 +75,8 @@ def set_stage(scene: Any, camera: str, long_side: int, engine: Engine) -> Any:
     try:
         _furnish(stage, scene, room, found)
         _settings(stage, scene, _aspect(scene, found), long_side, engine)
+        view: Any = stage.view_settings
+        view.exposure += _stops(scene, found)
     except Exception:
         strike_stage(stage)
         raise
@@ -236,6 +238,12 @@ def _aspect(scene: Any, camera: Any) -> tuple[int, int]:
     """Width and height of a camera's picture: those of its line."""
     line = next((c for c in camera_lines(scene) if c.id == camera.get(ID)), None)
     return line.image_size if line is not None else (1536, 1024)
+
+
+def _stops(scene: Any, camera: Any) -> float:
+    """Stops by which pictures through a camera are brighter than the room's exposure: those of its line."""
+    line = next((c for c in camera_lines(scene) if c.id == camera.get(ID)), None)
+    return line.stops if line is not None else 0.0
 
 
 def _camera_model(scene: Any, camera: Any) -> CameraModel:

@@ -8,7 +8,8 @@ be waited for. (Paper, stage 10.)
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
+from typing import Any
 
 from ..artifacts.analysis import Calibration, Finding, SceneAnalysis
 from ..artifacts.correction import FAULT_KINDS, CorrectionReport
@@ -17,7 +18,7 @@ from ..artifacts.light import Brightness, LightPlan, LightReply
 from ..artifacts.objects import RoomStyle
 from ..correction.correct import Options, correct
 from ..correction.looks import pictures_of
-from ..errors import ProgramError
+from ..errors import ProgramError, RoomError
 from ..layout.hand import apply_hand_edits
 from ..light.albedo import room_albedo
 from ..light.decide import Decision, decide
@@ -27,7 +28,9 @@ from ..light.lamps import is_lamp
 from ..light.levels import levelled
 from ..light.lights import Lit, make_lights
 from ..light.measure import Places, shines, surround, visible_places
+from ..light.photograph import stops_for
 from ..light.space import Space, space_of
+from ..light.standing import as_it_stands, with_former_fixes
 from ..light.tint import background_light, light_tint
 from ..light.tone import LOOK, TRANSFORM
 from ..light.views import EYES, TOP, cut_height, eye_cameras, top_camera
@@ -39,8 +42,9 @@ from ..program.limits import FINISHED_ROOM_LIMITS
 from ..program.lines import parse_layout
 from ..program.prelude.proxies import proxy_shapes
 from ..program.prelude.record import Record
+from ..program.prelude.shape import Shape
 from .base import Reads, Stage, View
-from .wishes import Ask, Build, FindImages, Picture, Request, StageRun, Tell
+from .wishes import Ask, Build, FindImages, Picture, Request, StageRun, Tell, Wish
 
 ID = "s10_finish"
 REFERENCE = "reference"
@@ -55,28 +59,25 @@ def run(view: View) -> StageRun:
 
     Then the finished room is looked through for faults; `CorrectionReport` lists what was mended and what was not.
     """
-    before, calibration = view.need(LayoutProgram), view.need(Calibration)
+    before = view.need(LayoutProgram)
     layout, findings = apply_hand_edits(parse_layout(before.text), view.hand_edits, before.hand_edits)
     yield Tell("Looking at the light", 1, 4)
     record = evaluate(relaid(before.text, layout), FINISHED_ROOM_LIMITS)
-    space = space_of(layout, room_albedo(record))
-    places = _places(view, space, calibration)
     lamps = [p for p in layout.proxies if is_lamp(p)]
-    request = _request(view, layout, lamps)
-    reply: LightReply | None = None
-    if request is not None:
-        (reply,) = yield Ask((request,), optional=True)
-    decision = decide(space, places, layout.windows, lamps, _shining(view, calibration, lamps, places), reply)
-    yield Tell("Placing lights and cameras", 2, 4)
-    finished, plan = _finished(view, space, places, decision, record, calibration)
+    if view.only is None:
+        finished, plan = yield from _lit_anew(view, layout, lamps, record)
+    else:
+        finished, plan = _as_it_stood(view, layout, lamps, record)
     held, more = _as_the_artist_left_it(finished, view.hand_edits)
     yield Tell("Looking for faults", 3, 4)
     shown = pictures_of(record)
     pictures = (yield FindImages(shown)) if shown else None
     text, report = _corrected(view, switched(relaid(before.text, held), held, lamps, record.furnished), pictures)
+    if view.only is not None:
+        report = with_former_fixes(report, view.recall(CorrectionReport), held)
     yield Tell("Building the room", 4, 4)
     yield Build(text)
-    plan = plan.model_copy(update={"findings": [*plan.findings, *more]})
+    plan = plan.model_copy(update={"findings": [*plan.findings, *(f for f in more if f not in plan.findings)]})
     new = [f for f in findings if f not in before.findings]
     program = before.model_copy(
         update={
@@ -87,6 +88,35 @@ def run(view: View) -> StageRun:
         }
     )
     return [program, plan, report]
+
+
+def _lit_anew(
+    view: View, layout: Layout, lamps: Sequence[ProxyLine], record: Record
+) -> Generator[Wish, Any, tuple[Layout, LightPlan]]:
+    """The layout with light and views as in the picture, and the reasons; the model is asked once."""
+    calibration = view.need(Calibration)
+    space = space_of(layout, room_albedo(record))
+    places = _places(view, space, calibration)
+    request = _request(view, layout, lamps)
+    reply: LightReply | None = None
+    if request is not None:
+        (reply,) = yield Ask((request,), optional=True)
+    decision = decide(space, places, layout.windows, lamps, _shining(view, calibration, lamps, places), reply)
+    yield Tell("Placing lights and cameras", 2, 4)
+    return _finished(view, space, places, decision, record)
+
+
+def _as_it_stood(view: View, layout: Layout, lamps: Sequence[ProxyLine], record: Record) -> tuple[Layout, LightPlan]:
+    """The layout with light and views as they stand, in the lamps as they are now, and the reasons of then."""
+    standing, plan = view.recall(LayoutProgram), view.recall(LightPlan)
+    if standing is None or plan is None:
+        raise RoomError("The room has no light yet that could be kept.", "Run the whole stage first.")
+    there, _ = apply_hand_edits(parse_layout(standing.text), view.hand_edits, standing.hand_edits)
+    return as_it_stands(layout, there, lamps, _shapes_of(lamps, record), plan.style), plan
+
+
+def _shapes_of(lamps: Sequence[ProxyLine], record: Record) -> dict[str, Sequence[Shape]]:
+    return {p.id: record.furnished.get(p.id) or proxy_shapes(p.model_dump()) for p in lamps}
 
 
 def _corrected(view: View, text: str, pictures: frozenset[str] | None) -> tuple[str, CorrectionReport]:
@@ -147,12 +177,12 @@ def _width(window: WindowLine) -> float:
 
 
 def _finished(
-    view: View, space: Space, places: Places | None, decision: Decision, record: Record, calibration: Calibration
+    view: View, space: Space, places: Places | None, decision: Decision, record: Record
 ) -> tuple[Layout, LightPlan]:
     """The layout with everything that this stage adds, and the reasons."""
     layout = space.layout
     style = view.recall(RoomStyle)
-    shapes = {p.id: record.furnished.get(p.id) or proxy_shapes(p.model_dump()) for p in decision.lamps}
+    shapes = _shapes_of(decision.lamps, record)
     tint = light_tint(style.gains if style is not None and places is not None else None)
     lit = make_lights(
         space, decision.style, shapes, decision.lamps, decision.windows, decision.sun, tint, decision.warmth
@@ -167,6 +197,8 @@ def _finished(
     taken = {line.id for name in ("proxies", *LISTS) for line in getattr(layout, name)} - {TOP, *EYES}
     names = tuple(name if name not in taken else f"{name}_view" for name in EYES)
     eyes, coverage = eye_cameras(space, names)
+    if decision.style not in ("evening", "night"):  # what is dark then is meant to be dark
+        eyes = [e.model_copy(update={"stops": stops_for(space, lights, sky.strength, e, shown)}) for e in eyes]
     cameras = [top_camera(space, cut, TOP if TOP not in taken else f"{TOP}_view"), *eyes]
     own = {c.id for c in cameras}
     kept: list[CameraLine] = [c for c in layout.cameras if c.id not in own]
@@ -222,5 +254,6 @@ STAGE = Stage(
     writes=(LayoutProgram, LightPlan, CorrectionReport),
     run=run,
     settings=(CORRECTIONS_OFF,),
-    recalls=(Reads(RoomStyle),),
+    partial=True,
+    recalls=(Reads(RoomStyle), Reads(LayoutProgram, (ID,)), Reads(LightPlan), Reads(CorrectionReport)),
 )

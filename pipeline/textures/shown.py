@@ -15,9 +15,9 @@ from ..artifacts.common import ImageBox
 from ..artifacts.layout import Layout
 from ..artifacts.textures import TextureQuality
 from ..geometry.camera import project
+from ..light.developed import developed
 from ..objects.colours import convex_hull
 from ..picture import ReferencePicture
-from ..picture_tone import developed
 from .drawings import is_drawing
 from .occluders import Solid, hidden_pixels, solids_of
 from .pixels import Mask, Pixels, to_linear

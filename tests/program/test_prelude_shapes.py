@@ -180,7 +180,7 @@ REFUSED = {
     "cone: radius and top_radius must not both": lambda: solids.cone(0, 1),
     "capsule: height is over all": lambda: solids.capsule(1, 1),
     "torus: thickness": lambda: solids.torus(1, 2),
-    "lathe: only the first and the last": lambda: profiles.lathe([(1, 0), (0, 1), (1, 2)]),
+    "lathe: all points lie on the axis": lambda: profiles.lathe([(0, 0), (0, 1), (0, 2)]),
     "lathe: a radius must not be negative": lambda: profiles.lathe([(-1, 0), (1, 1)]),
     "extrude: outline must go round an area": lambda: profiles.extrude([(0, 0), (1, 0), (2, 0)], 1),
     "tube: points needs at least 2 different": lambda: profiles.tube([(0, 0, 0), (0, 0, 0)], 1),
@@ -256,3 +256,10 @@ def test_an_edge_may_be_given_where_the_reference_lists_it() -> None:
     ):
         assert by_place.vertices.tolist() == by_name.vertices.tolist() and by_place.faces == by_name.faces
     assert solids.cylinder(0.1, 0.4, (1, 0, 0)).vertices[:, 0].min() > 0.8
+
+
+def test_a_waist_on_the_axis_is_thin_and_not_refused() -> None:
+    glass = profiles.lathe([(1, 0), (0, 1), (1, 2)], segments=16)
+    at_waist = glass.vertices[np.abs(glass.vertices[:, 2] - 1) < 1e-9]
+    assert len(at_waist) and np.hypot(at_waist[:, 0], at_waist[:, 1]).max() <= 1.01e-4
+    assert len(np.unique(np.round(glass.vertices, 9), axis=0)) == len(glass.vertices)

@@ -197,3 +197,15 @@ def test_a_chosen_view_cuts_the_walls_before_it_and_gives_them_back(built: Any) 
 def test_lines_of_light_survive_a_round_through_text() -> None:
     layout = parse_layout(ROOM)
     assert parse_layout(print_layout(layout)) == layout
+
+
+def test_a_view_is_rendered_brighter_by_its_own_stops() -> None:
+    text = ROOM.replace("image_size=(320, 240), near=3.5)", "image_size=(320, 240), near=3.5, stops=0.6)")
+    BlenderScene(bpy.context.scene).build(text)
+    scene = bpy.context.scene
+    for name, exposure in (("reference", 0.75), ("top", 1.35)):
+        stage = set_stage(scene, name, 64, "CYCLES")
+        assert stage.view_settings.exposure == pytest.approx(exposure)
+        strike_stage(stage)
+    assert scene.view_settings.exposure == pytest.approx(0.75)
+    assert parse_layout(print_layout(parse_layout(text))).cameras[1].stops == 0.6

@@ -8,9 +8,9 @@ from pathlib import Path
 import bpy
 import numpy as np
 import pytest
+from code_as_room.pipeline.light.developed import developed, wash
 from code_as_room.pipeline.light.tone import AGX, MEDIUM_HIGH, linear
 from code_as_room.pipeline.picture import ReferencePicture, load_picture
-from code_as_room.pipeline.picture_tone import developed, wash
 from PIL import Image
 
 PAINTS = ((201, 185, 154), (40, 90, 165), (160, 95, 50), (90, 140, 70), (190, 60, 50), (120, 120, 120), (225, 225, 222))

@@ -42,23 +42,27 @@ def ring_of(where: str, name: str, points: Any) -> list[tuple[float, ...]]:
     return kept if area > 0 else kept[::-1]
 
 
+_WAIST = 1e-4  # metres
+
+
 @by_kind
 def lathe(profile: Any, segments: Any = 32, at: Any = ORIGIN) -> Shape:
     """Points (radius, z) turned round Z: vases, lamp feet, bowls. Ends off the axis get a flat face; a profile that ends
     with its first point is a ring: shades, hollow pots.
 
-    Only the first and the last point may lie on the axis (radius 0); other ends get a flat face. When the last point is
-    the first, the profile is a closed ring, as for a rim.
+    Other ends than those on the axis get a flat face. When the last point is the first, the profile is a closed ring, as
+    for a rim. A waist on the axis between the ends would be a single point: it gets a radius of 0.1 mm.
     """
     found = outline_of("lathe", "profile", profile, 2, 2)
     loop = len(found) > 3 and math.dist(found[0], found[-1]) <= 1e-9
     found = found[:-1] if loop else found
     if any(radius < 0 for radius, _ in found):
         raise fail("lathe", "a radius must not be negative")
-    if any(radius == 0 for radius, _ in (found if loop else found[1:-1])) or not any(r for r, _ in found):
-        raise fail("lathe", "only the first and the last point may lie on the axis (radius 0)")
+    if not any(radius for radius, _ in found):
+        raise fail("lathe", "all points lie on the axis (radius 0)")
     count = whole("lathe", "segments", segments, 3, MOST_SEGMENTS)
-    points = [(p[0], p[1]) for p in found]
+    ends = () if loop else (0, len(found) - 1)
+    points = [(p[0] if n in ends else max(p[0], _WAIST), p[1]) for n, p in enumerate(found)]
     vertices, faces = revolve(points, count, loop)
     return ringed("lathe", vertices, faces, at, ring_sizes(points, count), loop, crease=crease_of(count))
 

@@ -171,8 +171,9 @@ class Recorder:
         background: Any = (1.0, 1.0, 1.0),
     ) -> None:
         """The light from all around (linear colour times that of `kelvin`), and what a camera sees outside; once."""
+        self._once("world", self.record.worlds)
         line = {
-            "id": self._only("world", id, self.record.worlds),
+            "id": self._new("world", id),
             "color": point("world", "color", color),
             "strength": number("world", "strength", strength, 0.0, 1e5),
             "kelvin": number("world", "kelvin", kelvin, 0.0, HOTTEST),
@@ -184,8 +185,9 @@ class Recorder:
         self, id: Any, exposure: Any = 0.0, transform: Any = "AgX", look: Any = "", ceiling: Any = 0.0, cut: Any = 0.0
     ) -> None:
         """How the room is shown: exposure in stops, view transform and look, a one-sided ceiling, a section; once."""
+        self._once("view", self.record.views)
         line = {
-            "id": self._only("view", id, self.record.views),
+            "id": self._new("view", id),
             "exposure": number("view", "exposure", exposure, -32.0, 32.0),
             "transform": choice("view", "transform", transform, VIEW_TRANSFORMS),
             "look": text("view", "look", look, 100),
@@ -194,10 +196,9 @@ class Recorder:
         }
         self.record.views.append(line)
 
-    def _only(self, where: str, identifier: Any, before: list[dict[str, Any]]) -> str:
+    def _once(self, where: str, before: list[dict[str, Any]]) -> None:
         if before:
             raise fail(where, f"there is already a {where} line; write it once")
-        return self._new(where, identifier)
 
     def camera(
         self,
@@ -209,6 +210,7 @@ class Recorder:
         image_size: Any = (1024, 1024),
         principal: Any = (500.0, 500.0),
         near: Any = 0.02,
+        stops: Any = 0.0,
     ) -> None:
         """A camera: camera-to-world matrix row by row, vertical field of view in radians or height in metres."""
         if not isinstance(image_size, (list, tuple)) or len(image_size) != 2:
@@ -222,6 +224,7 @@ class Recorder:
             "image_size": tuple(whole("camera", "image_size", side, 1, 100_000) for side in image_size),
             "principal": point("camera", "principal", principal, 2),
             "near": positive("camera", "near", near),
+            "stops": number("camera", "stops", stops, -20.0, 20.0),
         }
         if kind == "perspective" and not line["fov_y"]:
             raise fail("camera", "a perspective camera needs fov_y, its vertical field of view in radians")

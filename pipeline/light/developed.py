@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageFilter
 
-from .light.tone import AGX, MEDIUM_HIGH, linear, luminance, scene_light
-from .picture import ReferencePicture
+from ..picture import ReferencePicture
+from .tone import AGX, MEDIUM_HIGH, linear, luminance, scene_light
 
 Floats = NDArray[np.float64]
 
