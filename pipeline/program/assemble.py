@@ -14,12 +14,13 @@ from .joiner import join_modules
 from .parse_safe import uncollected
 from .prelude import registry
 from .selection import Piece, Pieces, global_names
-from .trimming import trimmed, with_short_docs
+from .trimming import trimmed, with_short_docs, without_remarks
+from .unchecked import unchecked
 
 MARKER = "# ==== room ===="
 """The line between the prelude and the room."""
 MOST_BYTES = 300_000
-"""A longer room.py does without the docstrings of the prelude's own functions."""
+"""A longer room.py does without the docstrings of the prelude's own functions, a file also without its checks."""
 
 _HERE = Path(__file__).resolve().parent
 _MADE = {**registry.CONSTRUCTORS, **registry.LOOKS}
@@ -28,7 +29,7 @@ _PUBLIC = frozenset({*registry.CONSTANTS, *registry.MATH, *_MADE, *registry.LINE
 
 _HEADER = '''# SPDX-License-Identifier: GPL-3.0-or-later
 # The functions of the objects are as their authors wrote them; rules of style do not apply to those.
-# ruff: noqa: B007, B023, C416, E731, FURB136, PLR1716, RUF007, RUF046, RUF059, RUF100
+# ruff: noqa: B007, B023, B905, C416, E731, FURB136, PLR1716, RUF007, RUF046, RUF059, RUF100
 """A room as a program, made with Code-as-Room for Blender.
 
 Run it in Blender 4.5 or later, with no add-on: `blender --background --python room.py`, or open it in the Text Editor
@@ -46,6 +47,10 @@ from __future__ import annotations
 
 '''
 
+_TRUSTING = """
+This is a large room, so its prelude does not check values any more: those below were checked when it was made.
+"""
+
 _BUILD = '''def build():
     """Check the room and make it in Blender. The last statement of a room."""
     _recorder.build()
@@ -59,11 +64,12 @@ def prelude_text() -> str:
     return _prelude(_PUBLIC, True)
 
 
-@functools.lru_cache(maxsize=2)
-def _pieces(docs: bool) -> Pieces:
+@functools.lru_cache(maxsize=3)
+def _pieces(docs: bool, checks: bool) -> Pieces:
     """The whole prelude, taken apart. With `docs`, its own functions keep what their docstrings begin with."""
     with uncollected():
-        return Pieces.of(with_short_docs(_joined(), {*_PUBLIC, "build"}, docs), docs)
+        text = with_short_docs(_joined(), {*_PUBLIC, "build"}, docs)
+        return Pieces.of(text if checks else without_remarks(unchecked(text)), docs)
 
 
 @functools.lru_cache(maxsize=1)
@@ -80,12 +86,13 @@ def _joined() -> str:
 
 
 @functools.lru_cache(maxsize=8)
-def _prelude(used: frozenset[str], docs: bool) -> str:
+def _prelude(used: frozenset[str], docs: bool, checks: bool = True) -> str:
     """What rooms need that use these names."""
-    pieces = _pieces(docs)
+    pieces = _pieces(docs, checks)
     needed = pieces.needed([*used, "build"])
     imports = {at for at in needed if _is_import(pieces.items[at])}
-    return _HEADER + _imports(pieces.text(imports), used) + "\n\n" + pieces.text(needed - imports)
+    header = _HEADER if checks else _HEADER.replace("\nLicence:", f"{_TRUSTING}\nLicence:")
+    return header + _imports(pieces.text(imports), used) + "\n\n" + pieces.text(needed - imports)
 
 
 def _is_import(item: object) -> bool:
@@ -113,19 +120,29 @@ def assemble(room_text: str) -> str:
 
     What a room needs is found in its text; one that is not Python gets the whole prelude.
     """
+    return _first_short_enough(room_text, [(True, True), (False, True)])
+
+
+def assemble_file(room_text: str) -> str:
+    """The whole room.py as it is handed out: the same room in fewer words (see `finished`).
+
+    It was checked when it was made, so the checks go too where they make it too long (see `unchecked`).
+    """
+    return _first_short_enough(finished(room_text), [(True, True), (False, True), (False, False)])
+
+
+def _first_short_enough(room_text: str, ways: list[tuple[bool, bool]]) -> str:
+    """The room below its prelude, with docstrings and checks or not: the first that is not too long, else the last."""
     try:
         used = frozenset(global_names(room_text) & _PUBLIC)
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         used = _PUBLIC
-    whole = f"{_prelude(used, True)}\n\n{MARKER}\n{room_text}"
-    if len(whole) <= MOST_BYTES and len(whole.encode("utf-8", "replace")) <= MOST_BYTES:
-        return whole
-    return f"{_prelude(used, False)}\n\n{MARKER}\n{room_text}"
-
-
-def assemble_file(room_text: str) -> str:
-    """The whole room.py as it is handed out: the same room in fewer words (see `finished`)."""
-    return assemble(finished(room_text))
+    whole = ""
+    for docs, checks in ways:
+        whole = f"{_prelude(used, docs, checks)}\n\n{MARKER}\n{room_text}"
+        if len(whole) <= MOST_BYTES and len(whole.encode("utf-8", "replace")) <= MOST_BYTES:
+            break
+    return whole
 
 
 def is_assembled(full_text: str) -> bool:

@@ -15,7 +15,7 @@ from ..errors import ProgramError
 from .lines import WIDTH as LINE_WIDTH
 from .lines import layout_statements, parse_line, print_line, rounded_line
 from .narrowing import narrowed
-from .wrapping import has_comment, wrapped, written
+from .wrapping import bare_tuples, has_comment, wrapped, written
 
 
 @functools.lru_cache(maxsize=2)
@@ -46,8 +46,10 @@ def finished(text: str) -> str:
     kept = {n.name: n for n in tree.body if isinstance(n, ast.FunctionDef)}
     for name, (start, end) in spans:
         if name in kept:
-            source = written(kept[name]) if name in changed else "\n".join(lines[start:end])
-            new[start, end] = wrapped(_strict(_titled(source)))
+            source = "\n".join(lines[start:end])
+            if name in changed:
+                source = _briefly(bare_tuples(written(kept[name])))
+            new[start, end] = wrapped(_titled(source))
             continue
         while end < len(lines) and not lines[end].strip():
             end += 1
@@ -79,27 +81,11 @@ def _brief_lines(tree: ast.Module) -> list[tuple[int, int, str]]:
         return []
 
 
+def _briefly(source: str) -> str:
+    """A function that does less than it did: what its docstring begins with, as the rest may be of what is gone."""
+    return re.sub(r'(\n    """[^"\n]*)\n\n(?:[^"]|"(?!""))*"""', r'\1"""', source, count=1)
+
+
 def _titled(source: str) -> str:
     """A library piece's docstring without what the library's catalogue reads off it."""
     return re.sub(r'("""[^"\n]*)\n\n\s*words: (?:[^"]|"(?!""))*"""', r'\1"""', source, count=1)
-
-
-def _strict(source: str) -> str:
-    """`zip(a, b)` with its `strict=False` said."""
-    if "zip(" not in source:
-        return source
-    tree = ast.parse(source)
-    starts = [0]
-    for line in source.encode().split(b"\n"):
-        starts.append(starts[-1] + len(line) + 1)
-    data = source.encode()
-    calls = [
-        n
-        for n in ast.walk(tree)
-        if isinstance(n, ast.Call) and isinstance(n.func, ast.Name) and n.func.id == "zip" and not n.keywords and n.args
-    ]
-    for node in sorted(calls, key=lambda n: (-(n.end_lineno or 0), -(n.end_col_offset or 0))):
-        last = node.args[-1]
-        at = starts[(last.end_lineno or 1) - 1] + (last.end_col_offset or 0)
-        data = data[:at] + b", strict=False" + data[at:]
-    return data.decode()

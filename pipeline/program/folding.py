@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TypeVar
 
 Block = TypeVar("Block", ast.If, ast.For, ast.FunctionDef)
@@ -57,7 +57,7 @@ class Folder(ast.NodeTransformer):
     def visit_IfExp(self, node: ast.IfExp) -> ast.expr:
         """One of two values."""
         self.generic_visit(node)
-        known = _truth(node.test)
+        known, node.test = _truth(node.test), _condition(node.test)
         return node if known is None else node.body if known else node.orelse
 
     def visit_Subscript(self, node: ast.Subscript) -> ast.expr:
@@ -85,7 +85,7 @@ class Folder(ast.NodeTransformer):
     def visit_If(self, node: ast.If) -> Any:
         """A branch."""
         self.generic_visit(node)
-        known = _truth(node.test)
+        known, node.test = _truth(node.test), _condition(node.test)
         if known is None:
             return _whole(node)
         return node.body if known else node.orelse or None
@@ -99,6 +99,54 @@ class Folder(ast.NodeTransformer):
         """A function."""
         self.generic_visit(node)
         return _whole(node)
+
+
+class Ruler(ast.NodeTransformer):
+    """Works out what is known of names that have one of a few plain values each."""
+
+    def __init__(self, values: Mapping[str, Sequence[Any]]) -> None:
+        self.values = values
+
+    def _of(self, node: ast.expr) -> Sequence[Any]:
+        return self.values.get(node.id, ()) if isinstance(node, ast.Name) else ()
+
+    def visit_Compare(self, node: ast.Compare) -> ast.expr:
+        """A comparison that comes out the same for all values that a name may have."""
+        self.generic_visit(node)
+        known = value_of(node.comparators[0]) if len(node.comparators) == 1 else None
+        try:
+            found = {_COMPARE[type(node.ops[0])](value, known[0]) for value in self._of(node.left)} if known else set()
+        except TypeError:
+            return node
+        return ast.Constant(found.pop()) if len(found) == 1 else node
+
+    def visit_Subscript(self, node: ast.Subscript) -> ast.expr:
+        """A dict that is written out, without the keys that are never asked for."""
+        self.generic_visit(node)
+        values = self._of(node.slice)
+        if values and isinstance(node.value, ast.Dict):
+            keys = [None if key is None else value_of(key) for key in node.value.keys]
+            if None not in keys and not any(map(does_something, node.value.values)):
+                pairs = zip(node.value.keys, node.value.values, keys, strict=True)
+                kept = [(k, v) for k, v, known in pairs if known is not None and known[0] in values]
+                node.value = ast.Dict([k for k, _ in kept], [v for _, v in kept])
+        return node
+
+    def visit_If(self, node: ast.If) -> ast.stmt:
+        """A branch on what a name is."""
+        self.generic_visit(node)
+        node.test = self._truth(node.test)
+        return node
+
+    def visit_IfExp(self, node: ast.IfExp) -> ast.expr:
+        """One of two values by what a name is."""
+        self.generic_visit(node)
+        node.test = self._truth(node.test)
+        return node
+
+    def _truth(self, test: ast.expr) -> ast.expr:
+        found = {bool(value) for value in self._of(test)}
+        return ast.Constant(found.pop()) if len(found) == 1 else test
 
 
 def value_of(node: ast.expr) -> tuple[Any] | None:
@@ -123,6 +171,15 @@ def _truth(test: ast.expr) -> bool | None:
     return None
 
 
+def _condition(test: ast.expr) -> ast.expr:
+    """The same condition without what does not count in it: `a and True` is `a` there."""
+    if not isinstance(test, ast.BoolOp):
+        return test
+    stops = isinstance(test.op, ast.Or)
+    values = [v for v in test.values if (known := value_of(v)) is None or bool(known[0]) == stops]
+    return test if not values else values[0] if len(values) == 1 else ast.BoolOp(test.op, values)
+
+
 def _whole(node: Block) -> Block:
     """A statement with blocks that end at their first return, and hold at least one statement where they must."""
     for name in ("body", "orelse"):
@@ -134,26 +191,34 @@ def _whole(node: Block) -> Block:
     return node
 
 
-def drop_spare_locals(function: ast.FunctionDef) -> None:
-    """Leave out assignments to names that nothing reads, where working them out does nothing else."""
+def drop_spare_locals(function: ast.FunctionDef, pure: frozenset[str] = frozenset()) -> None:
+    """Leave out assignments to names that nothing reads, where working them out does nothing else.
+
+    Args:
+        pure: modules whose functions only give something back.
+    """
     while True:
         read = {n.id for n in ast.walk(function) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load)}
-        sparer = _Sparer(read)
+        sparer = _Sparer(read, pure)
         sparer.visit(function)
         if not sparer.found:
             return
 
 
 class _Sparer(ast.NodeTransformer):
-    def __init__(self, read: set[str]) -> None:
-        self.read, self.found = read, False
+    def __init__(self, read: set[str], pure: frozenset[str]) -> None:
+        self.read, self.pure, self.found = read, pure, False
 
     def visit_Assign(self, node: ast.Assign) -> ast.stmt | None:
         """name = value, or a, b = value, where no name is read."""
         self._split(node)
         parts = [n for target in node.targets for n in ast.walk(target)]
         plain = all(isinstance(n, (ast.Name, ast.Tuple, ast.expr_context)) for n in parts)
-        if not plain or any(isinstance(n, ast.Name) and n.id in self.read for n in parts) or does_something(node.value):
+        if (
+            not plain
+            or any(isinstance(n, ast.Name) and n.id in self.read for n in parts)
+            or does_something(node.value, self.pure)
+        ):
             return node
         self.found = True
         return None
@@ -166,7 +231,9 @@ class _Sparer(ast.NodeTransformer):
         pairs = list(zip(target.elts, value.elts, strict=False))
         if len(target.elts) != len(value.elts) or any(isinstance(n, ast.Starred) for pair in pairs for n in pair):
             return
-        kept = [(t, v) for t, v in pairs if not isinstance(t, ast.Name) or t.id in self.read or does_something(v)]
+        kept = [
+            (t, v) for t, v in pairs if not isinstance(t, ast.Name) or t.id in self.read or does_something(v, self.pure)
+        ]
         if 0 < len(kept) < len(pairs):
             self.found = True
             alone = len(kept) == 1
@@ -189,7 +256,13 @@ class _Sparer(ast.NodeTransformer):
         return _whole(node) if node.body or node.orelse else None
 
 
-def does_something(node: ast.expr) -> bool:
-    """Whether working a value out may change something: `append` does, and what is called on a value may."""
-    calls = [n for n in ast.walk(node) if isinstance(n, ast.Call)]
-    return any(not isinstance(c.func, ast.Name) or c.func.id == "append" for c in calls)
+def does_something(node: ast.expr, pure: frozenset[str] = frozenset()) -> bool:
+    """Whether working a value out may change something: `append` does, and what is called on a value may.
+
+    Args:
+        pure: modules whose functions only give something back.
+    """
+    called = [n.func for n in ast.walk(node) if isinstance(n, ast.Call)]
+    of_modules = [f for f in called if isinstance(f, ast.Attribute) and isinstance(f.value, ast.Name)]
+    known = {id(f) for f in of_modules if isinstance(f.value, ast.Name) and f.value.id in pure}
+    return any(id(f) not in known and (not isinstance(f, ast.Name) or f.id == "append") for f in called)

@@ -15,7 +15,7 @@ from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
-from .folding import LITERALS, Folder, drop_spare_locals
+from .folding import LITERALS, Folder, Ruler, drop_spare_locals
 
 MOST_ROUNDS = 12
 
@@ -32,7 +32,7 @@ def narrowed(tree: ast.Module, untouched: Collection[str] = ()) -> set[str]:
     program = _Program(tree, untouched)
     for _ in range(MOST_ROUNDS):
         program.drop_unused()
-        fixed = [program.settle(name) for name in program.calls.functions]
+        fixed = [program.settle(name) or program.rule_out(name) for name in program.calls.functions]
         if not any(fixed):
             break
     kept = {id(node) for node in program.calls.functions.values()}
@@ -100,6 +100,7 @@ class _Program:
             facts = self.calls.facts[name]
             facts.open_calls |= {name, *facts.calls}
         self.changed: set[str] = set()
+        self.ruled: dict[str, dict[str, list[Any]]] = {}
         # Two functions of one name, or a name that is something else elsewhere: better not to look closer.
         names = [n.name for n in tree.body if isinstance(n, ast.FunctionDef)]
         bound = set().union(*(facts.bound for facts in self.calls.everywhere()))
@@ -118,14 +119,62 @@ class _Program:
         for name in calls.functions.keys() - kept:
             del calls.functions[name], calls.facts[name]
 
+    def _is_known(self, name: str) -> bool:
+        """Whether all that call a function are seen."""
+        given = self.calls.functions[name].args
+        if name in self.unclear or given.vararg or given.kwarg or given.kwonlyargs or given.posonlyargs:
+            return False
+        return not any(name in facts.values or name in facts.open_calls for facts in self.calls.everywhere())
+
+    def rule_out(self, name: str) -> bool:
+        """Leave out what a function does for values of its parameters that no call gives; whether there was any."""
+        function, given = self.calls.functions[name], self.calls.functions[name].args
+        if not self._is_known(name):
+            return False
+        bound = self.calls.facts[name].bound
+        found = {p.arg: v for p in given.args if bound[p.arg] == 1 and (v := self._values(name, p.arg)) is not None}
+        if not found or found == self.ruled.get(name):
+            return False
+        self.ruled[name] = found
+        before = ast.dump(function)
+        Ruler(found).visit(function)
+        if ast.dump(function) == before:
+            return False
+        Folder().visit(function)
+        drop_spare_locals(function)
+        ast.fix_missing_locations(function)
+        self.calls.facts[name] = _Facts.of(function)
+        self.changed.add(name)
+        return True
+
+    def _values(self, name: str, parameter: str) -> list[Any] | None:
+        """The plain values that calls give a parameter, None where one of them gives another thing."""
+        function = self.calls.functions[name]
+        place = _place(function, parameter)
+        default = _default(function, place)
+        given = [default] if name in self.calls.furnished else []
+        for facts in self.calls.outside:
+            given += [_argument(call, place, parameter, default) for call in facts.calls.get(name, ())]
+        found: list[Any] = []
+        for owner, facts in self.calls.facts.items():
+            for call in facts.calls.get(name, ()):
+                value = _argument(call, place, parameter, default)
+                handed_on = self.ruled.get(owner, {}).get(value.id) if isinstance(value, ast.Name) else None
+                if handed_on is None:
+                    given.append(value)
+                elif owner != name:
+                    found += handed_on
+        if not all(isinstance(v, ast.Constant) and isinstance(v.value, LITERALS) for v in given):
+            return None
+        found += [v.value for v in given if isinstance(v, ast.Constant)]
+        return list({repr(v): v for v in found}.values()) or None
+
     def settle(self, name: str) -> bool:
         """Take out the parameters of a function that every call gives one value; whether there were any."""
         function, given = self.calls.functions[name], self.calls.functions[name].args
-        if name in self.unclear or given.vararg or given.kwarg or given.kwonlyargs or given.posonlyargs:
+        if not self._is_known(name):
             return False
         everywhere = list(self.calls.everywhere())
-        if any(name in facts.values or name in facts.open_calls for facts in everywhere):
-            return False
         callers = [owner for owner, facts in self.calls.facts.items() if name in facts.calls]
         calls = [call for facts in everywhere for call in facts.calls.get(name, ())]
         bound = self.calls.facts[name].bound

@@ -12,12 +12,12 @@ import ast
 import hashlib
 import threading
 from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
 from ..errors import ProgramError
-from .limits import Limits
+from .limits import FINISHED_ROOM_LIMITS, Limits
 from .parse_safe import names_read, parse
 from .prelude.budget import spend_vertices
 from .prelude.shape import Shape, flat_shapes
@@ -62,6 +62,17 @@ class ShapeStore:
 
 
 STORE = ShapeStore()
+
+
+def remember(text: str, name: str, size: Iterable[float], shapes: list[Shape]) -> None:
+    """Keep what a def of a text with defs was seen to make of a size, so that a room with the same defs need not make it."""
+    try:
+        module = _Module.of(parse(text, FINISHED_ROOM_LIMITS), text)
+    except ProgramError:
+        return
+    digest = module.digest(name)
+    if digest is not None and shapes:
+        STORE.keep((digest, tuple(float(v) for v in size)), list(shapes))
 
 
 @dataclass

@@ -67,7 +67,7 @@ class Pieces:
 
     @staticmethod
     def of(text: str, titles: bool = True) -> Pieces:
-        """Take a module apart. With `titles`, headings keep the comments below them."""
+        """Take a module apart. Without `titles`, only joined modules have headings, with nothing below them."""
         found = Pieces()
         lines = text.split("\n")
         last = 0
@@ -119,7 +119,7 @@ class Pieces:
             above = max(above, item.above)
             if at in kept:
                 blocks += [f"\n\n{heading.text}" for heading in headings]
-                blocks.append("\n" * above + item.text)
+                blocks.append("\n" * (1 if headings else above) + item.text)
                 headings, above = [], 0
         return "\n".join(blocks).strip("\n") + "\n"
 
@@ -170,14 +170,16 @@ def _comment_above(lines: Sequence[str], low: int, start: int) -> int:
 
 
 def _headings(lines: Sequence[str], titles: bool) -> list[Heading]:
-    """The headings among lines between two statements."""
+    """The headings among lines between two statements; without titles those of modules, and as short as they can be."""
     found: list[list[str]] = []
     for line in lines:
         if HEADING.match(line):
             found.append([line])
         elif titles and found and line.startswith("#"):
             found[-1].append(line)
-    return [Heading("\n".join(block), len(block[0]) > _LONG) for block in found]
+    if titles:
+        return [Heading("\n".join(block), len(block[0]) > _LONG) for block in found]
+    return [Heading(re.sub(r"-{4,}$", "----", line), True) for [line] in found if len(line) > _LONG]
 
 
 def _taken_apart(node: ast.stmt, lines: Sequence[str], start: int) -> list[Piece]:

@@ -48,6 +48,23 @@ def with_short_docs(text: str, public: Collection[str], docs: bool) -> str:
     return _edited(source, edits)
 
 
+def without_remarks(text: str) -> str:
+    """A module's text without what is said behind its private constants, and docstrings of one sentence."""
+    source = text.encode()
+    starts = _line_starts(source)
+    edits: list[Edit] = []
+    for node in ast.parse(text).body:
+        start, end = _span(node, starts)
+        if isinstance(node, ast.Assign) and all(isinstance(t, ast.Name) and t.id[0] == "_" for t in node.targets):
+            if b"\n" not in source[start:end]:
+                edits.append((end, source.index(b"\n", end), ""))
+        elif isinstance(node, ast.FunctionDef) and ast.get_docstring(node):
+            start, end = _span(node.body[0], starts)
+            if (more := source.find(b". ", start, end)) >= 0:
+                edits.append((more + 1, end, '"""'))
+    return _edited(source, edits)
+
+
 def _line_starts(source: bytes) -> list[int]:
     starts = [0]
     for line in source.split(b"\n"):
@@ -108,7 +125,7 @@ def _plain_statement(node: ast.stmt, source: bytes, starts: list[int]) -> Iterat
     if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
         return
     old = source[start:end]
-    if isinstance(node, ast.AnnAssign) and node.value is not None and b"\n" not in old:
+    if isinstance(node, ast.AnnAssign) and node.value is not None and (b"\n" not in old or b"# " in old):
         yield _span(node.target, starts)[1], _span(node.value, starts)[0], " = "
     if b"\n" not in old or b"# " in old:
         return

@@ -118,6 +118,23 @@ def _bare_generators(line: str) -> str:
     return line
 
 
+def bare_tuples(code: str) -> str:
+    """A program with `a, b = (c, d)` and `return (c, d)` without the brackets, as a person writes them."""
+    return "\n".join(map(_bare_tuple, code.split("\n")))
+
+
+def _bare_tuple(line: str) -> str:
+    head, _, value = line.partition("(")
+    if not head.endswith((" = ", "return ")) or not value.endswith(")") or ", " not in value:
+        return line
+    bare = head + value[:-1]
+    try:
+        bodies = [ast.dump(ast.parse(f"def f():\n {text.strip()}")) for text in (line, bare)]
+    except SyntaxError:
+        return line
+    return bare if bodies[0] == bodies[1] else line
+
+
 def _in_double_quotes(code: str) -> str:
     """A program with its short strings in double quotes, where that changes nothing else."""
     rows = code.split("\n")

@@ -12,15 +12,17 @@ from typing import Any
 
 import bpy
 import pytest
+from code_as_room.pipeline.program import assemble
 from code_as_room.pipeline.program.assemble import MOST_BYTES, assemble_file, room_part
 from code_as_room.pipeline.program.evaluate import evaluate
 from code_as_room.pipeline.program.finishes import read_materials
 from code_as_room.pipeline.program.limits import FINISHED_ROOM_LIMITS
 from code_as_room.pipeline.program.lines import parse_layout
 from code_as_room.pipeline.scene.realise import realise_record
+from test_room_py import ROOM
 
 ROOT = Path(__file__).resolve().parents[2]
-LIMITS = {12: MOST_BYTES, 24: 340_000}
+LIMITS = {12: MOST_BYTES, 24: MOST_BYTES, 50: 380_000}
 """Bytes of a room of 100 objects, by the number of its kinds of furniture."""
 
 
@@ -132,6 +134,20 @@ def test_the_file_makes_the_add_ons_scene(name: str, tmp_path: Path) -> None:
     for key, entry in ours.items():
         assert plain[key] == entry, key
     assert sum(key.startswith("object ") for key in ours) > (100 if name == "hundred" else 24)
+
+
+@pytest.mark.parametrize("name", ["bedroom", "every constructor"])
+def test_without_its_checks_the_file_makes_the_same_scene(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = bedroom() if name == "bedroom" else ROOM
+    checked = assemble_file(text)
+    monkeypatch.setattr(assemble, "MOST_BYTES", 0)  # every file is too long now
+    file = assemble_file(text)
+    assert "raise _fail(" in checked and len(file) < 0.93 * len(checked)
+    (tmp_path / "one").mkdir(), (tmp_path / "two").mkdir()
+    one, two = made_plainly(checked, tmp_path / "one"), made_plainly(file, tmp_path / "two")
+    assert one == two and sum(key.startswith("object ") for key in one) > 4
 
 
 @pytest.mark.parametrize("name", ["bedroom", "hundred"])

@@ -97,6 +97,11 @@ def colour_of(where: str, name: str, value: Any) -> tuple[Any, str]:
     return linear(code), f'"{code}"'
 
 
+def end_of(where: str, name: str, value: Any) -> tuple[Any, str]:
+    """A colour, a number or a map, and how it is written."""
+    return colour_of(where, name, value) if isinstance(value, str) else value_of(where, name, value)
+
+
 def map_of(where: str, name: str, value: Any) -> Map:
     """A map that gives numbers or colours."""
     if not isinstance(value, Map):
@@ -122,7 +127,7 @@ def checked(where: str, name: str, value: Any) -> Any:
     """A setting of a map: one of its words, or a number within its limits."""
     if name in _CHOICES:
         return choice(where, name, value, _CHOICES[name])
-    return number(where, name, value, *_LIMITS[name])
+    return number(where, name, value, _LIMITS[name][0], _LIMITS[name][1])
 
 
 def lengths(
@@ -236,8 +241,7 @@ def ramp(map: Any, stops: Any) -> Map:
         if not isinstance(stop, (tuple, list)) or len(stop) != 2:
             raise fail(where, "each stop must be (place, colour or number)")
         place = number(where, "the place of a stop", stop[0], 0, 1)
-        read = colour_of if isinstance(stop[1], str) else value_of
-        value, key = read(where, "the value of a stop", stop[1])
+        value, key = end_of(where, "the value of a stop", stop[1])
         if isinstance(value, Map):
             raise fail(where, "the value of a stop must be a colour or a number")
         found.append((place, value))
@@ -254,7 +258,7 @@ def mix(a: Any, b: Any, by: Any = 0.5, mode: Any = "mix") -> Map:
     Args: `mode` "mix", "multiply", "lighten", "darken" or "add".
     """
     where = "mix"
-    ends = [(colour_of if isinstance(v, str) else value_of)(where, n, v) for n, v in (("a", a), ("b", b))]
+    ends = [end_of(where, n, v) for n, v in (("a", a), ("b", b))]
     share, key = value_of(where, "by", by)
     how = checked(where, "mode", mode)
     written = f"mix({ends[0][1]}, {ends[1][1]}, {key}" + (f', mode="{how}")' if how != "mix" else ")")
