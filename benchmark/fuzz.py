@@ -1,345 +1,224 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Mutated replies through everything that reads them: `python -m benchmark.fuzz [--replies 100000] [--runs 60] [--seed 1]`.
+"""Mutated replies through everything that reads them: `python -m benchmark.fuzz [--replies 100000] [--minutes 25] [--processes 2]`.
 
-Recorded replies of every kind are damaged, as text (cut, doubled, spliced, sprinkled) and as values (other types, infinite and
-huge numbers, odd texts), then parsed, repaired and validated; some of them are also what a whole stage gets to read. Only our
-own errors may come out, and no number that is not finite may reach a reply, an artifact or a program. The exit code is 1 where
-something else did; what did it is printed with the seed.
+Recorded replies of every kind are damaged, then parsed, repaired and validated as the answers of several vendors' models. What was
+read, and differs from all that was read before, is given to the stage that asks for it (`fuzz_waiting.py`), which goes on to its end.
+Last, whole stages of the full sample are asked and repaired with damaged answers (`fuzz_stages.py`). Only our own errors may
+come out, and no number that is not finite may reach a reply, an artifact, a program, a line, a look or a mesh. The exit code is 1
+where something else did; what did it is printed with its number, which makes it again: `--only NUMBER`.
+
+A stage that takes long gets fewer replies: the minutes are shared out evenly, and what others leave goes to those.
 """
 
 from __future__ import annotations
 
 import argparse
-import copy
-import json
-import math
+import gc
+import hashlib
 import random
 import sys
-import threading
 import time
 import traceback
-from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, field
+from functools import cache
+from multiprocessing import get_context
 
-from code_as_room.pipeline.artifacts import light, materials, objects, replies
-from code_as_room.pipeline.errors import ReplyError, RoomError
-from code_as_room.pipeline.memory import dump_memory, load_memory
-from code_as_room.pipeline.models.base import Prompt, Reply
-from code_as_room.pipeline.models.builtin.empty import empty_value
-from code_as_room.pipeline.models.recorded import RecordedClient, load_replies
-from code_as_room.pipeline.models.schema import strict_schema
-from code_as_room.pipeline.models.validate import validate_reply
-from code_as_room.pipeline.picture import load_picture
-from code_as_room.pipeline.program.lines import parse_layout
-from code_as_room.pipeline.run import Run
-from code_as_room.pipeline.stages import all_stages
 from pydantic import BaseModel
 
-from .plain_backend import PlainBackend
+from .fuzz_replies import MODELS, Seed, mutated, read_as
+from .fuzz_rooms import rooms, waiting_seeds
+from .fuzz_stages import fuzz_stages
+from .fuzz_waiting import Waiting
 
-HERE = Path(__file__).resolve().parent
-SAMPLE = HERE.parent / "samples" / "bedroom"
-KINDS: dict[str, type[BaseModel]] = {
-    "01_analysis": replies.AnalysisReply,
-    "01_second_look": replies.SecondLookReply,
-    "02_graph": replies.GraphReply,
-    "03_critique": replies.CritiqueReply,
-    "04_auxiliary": replies.AuxiliaryReply,
-    "05_descriptions": objects.DescriptionsReply,
-    "06_pieces": objects.PiecesReply,
-    "06_programs": objects.ProgramsReply,
-    "06_correct": objects.ProgramsReply,
-    "08_materials": materials.MaterialsReply,
-    "10_light": light.LightReply,
-}
-VALUES: tuple[Any, ...] = (
-    *(None, True, False, 0, -1, 1, 7, 1e-300, 1e308, -1e308, 10**30, -(10**400), math.inf, -math.inf, math.nan, 0.1),
-    *(
-        "",
-        " ",
-        "x",
-        "bed",
-        "1e999",
-        "NaN",
-        "12 m",
-        "null",
-        "\u0000",
-        "\ud800",
-        "😀" * 40,
-        "a" * 5000,
-        "../../etc",
-        "{{x}}",
-    ),
-    *([], {}, [[]], [None], [1, 2, 3], {"id": "x"}, {"x": 1}, {"error": "no"}, ["a"] * 200),
-)
-SPRINKLES = (
-    *(
-        "{",
-        "}",
-        "[",
-        "]",
-        '"',
-        "'",
-        ",",
-        ":",
-        "\\",
-        "\\u",
-        "\\ud800",
-        "\n",
-        "\x00",
-        "//",
-        "/*",
-        "*/",
-        "```",
-        "```json\n",
-    ),
-    *(
-        "NaN",
-        "-Infinity",
-        "1e999",
-        "undefined",
-        "None",
-        "True",
-        "</think>",
-        "<think>",
-        "\ufeff",
-        "\u201c",
-        "-",
-        "+",
-        ".",
-        "e9",
-    ),
-    *("data: ", "[DONE]", "Sure! Here it is:\n", "9" * 500, "[" * 80, '{"a":' * 80),
-)
+Place = tuple[str, str]
+"""A room's name and a request's key."""
+_SLOW = ("01_analysis", "01_second_look", "06_pieces", "06_programs", "06_correct", "10_light")
+"""Kinds whose stages take long; they come last, when it is known how much time the others left."""
 
 
-@dataclass(frozen=True)
-class Seed:
-    """A good reply of one kind, as data."""
+@dataclass
+class Row:
+    """What became of the replies to one question.
 
-    name: str
-    kind: type[BaseModel]
-    data: Any
-
-
-def seeds() -> list[Seed]:
-    """All recorded replies, and for kinds that were never recorded one that says nothing."""
-    found: list[Seed] = []
-    folders = [SAMPLE / "replies", *(path.parent for path in sorted((HERE / "recordings").rglob("replies.json")))]
-    for folder in folders:
-        for key, entry in sorted(load_replies(folder).items()):
-            name = key.split("/")[1]
-            if name in KINDS and isinstance(entry.get("reply"), dict):
-                found.append(Seed(name, KINDS[name], entry["reply"]))
-    missing = set(KINDS) - {seed.name for seed in found}
-    return found + [Seed(name, KINDS[name], empty_value(strict_schema(KINDS[name]))) for name in sorted(missing)]
-
-
-def mutated(data: Any, draw: random.Random) -> str:
-    """A damaged reply's text. `draw` may be hypothesis' own, which then shrinks what it finds."""
-    tree = json.loads(json.dumps(data))
-    if draw.random() < 0.7:
-        for _ in range(draw.choice((1, 1, 2, 5))):
-            tree = _other_value(tree, draw)
-    text = json.dumps(tree, ensure_ascii=draw.random() < 0.5)
-    if draw.random() < 0.5:
-        for _ in range(draw.choice((1, 1, 3))):
-            text = _damaged(text, draw)
-    return text
-
-
-def _other_value(tree: Any, draw: random.Random) -> Any:
-    """The tree with one value at a random place replaced, left out, or put elsewhere. Changed in place."""
-    holder, key = {"root": tree}, "root"
-    root: Any = holder
-    inner: Any = tree
-    while isinstance(inner, (dict, list)) and inner and (holder is root or draw.random() < 0.85):
-        keys: Sequence[Any] = list(inner) if isinstance(inner, dict) else range(len(inner))
-        holder, key = inner, draw.choice(keys)
-        inner = holder[key]
-    way = draw.random()
-    if way < 0.1 and holder is not root:
-        del holder[key]
-    elif way < 0.2 and isinstance(inner, (int, float)) and abs(inner) < 1e300:
-        holder[key] = inner * draw.choice((-1, 0, 1e3, 1e-6, 1e30))
-    elif way < 0.3 and isinstance(holder, dict) and holder is not root:
-        holder[draw.choice(("ID", "x y", key.upper(), key + "_", "\ud800"))] = holder.pop(key)
-    elif way < 0.4 and isinstance(holder, list):
-        holder.extend(holder[:] if len(holder) < 200 else [])
-    else:
-        holder[key] = copy.deepcopy(draw.choice(VALUES))
-    return root["root"]
-
-
-def _damaged(text: str, draw: random.Random) -> str:
-    """The text with one piece cut, doubled, moved or sprinkled in."""
-    at, end = sorted((draw.randrange(len(text) + 1), draw.randrange(len(text) + 1)))
-    near = min(end, at + draw.choice((1, 2, 10, 300)))
-    ways: tuple[Callable[[], str], ...] = (
-        lambda: text[:at],
-        lambda: text[at:],
-        lambda: text[:at] + text[near:],
-        lambda: text[:near] + text[at:],
-        lambda: text[:at] + draw.choice(SPRINKLES) + text[at:],
-        lambda: text[:at] + draw.choice(SPRINKLES) + text[near:],
-        lambda: f"Sure!\n```json\n{text}\n```\nAnything else?",
-        lambda: text.replace('"', draw.choice(("'", "\u201d", "")), draw.choice((1, 4, -1))),
-        lambda: text.replace(",", draw.choice((",,", "", ";")), draw.choice((1, -1))),
-        lambda: text + text,
-    )
-    return draw.choice(ways)()
-
-
-def not_finite(value: Any, path: str = "") -> Iterator[str]:
-    """Where numbers are not finite, in anything that pydantic or JSON can hold."""
-    if isinstance(value, BaseModel):
-        value = value.model_dump()
-    if isinstance(value, dict):
-        for key, item in value.items():
-            yield from not_finite(item, f"{path}.{key}")
-    elif isinstance(value, (list, tuple, set, frozenset)):
-        for number, item in enumerate(value):
-            yield from not_finite(item, f"{path}[{number}]")
-    elif isinstance(value, float) and not math.isfinite(value):
-        yield path
-
-
-def read(text: str, kind: type[BaseModel], salvage: bool) -> str:
-    """How reading a reply ends: "read" or "refused".
-
-    Raises:
-        AssertionError: a number that is not finite was let through, or an error is no sentence; whatever else was raised.
+    Attributes:
+        twice: read, but of a value that was tried before. done, stopped: at the end of the stage, or by an error of ours.
+        left: read, but there was no time for the stage. seconds: in stages; longest: of them.
     """
-    try:
-        reply, notes = validate_reply(text, kind, salvage)
-    except ReplyError as error:
-        assert error.message and "\n".join((*error.problems, str(error))).encode(), "an error in words"
-        return "refused"
-    places = list(not_finite(reply))
-    assert not places, f"not finite: {places[:5]}"
-    reply.model_dump_json().encode()
-    assert all(note.encode() for note in notes)
-    return "read"
+
+    kind: str
+    mutated: int = 0
+    refused: int = 0
+    read: int = 0
+    twice: int = 0
+    done: int = 0
+    stopped: int = 0
+    left: int = 0
+    seconds: float = 0.0
+    longest: float = 0.0
+    wrong: list[str] = field(default_factory=list)
+
+    def add(self, other: Row) -> None:
+        """Count another row of this kind in."""
+        for name in ("mutated", "refused", "read", "twice", "done", "stopped", "left", "seconds"):
+            setattr(self, name, getattr(self, name) + getattr(other, name))
+        self.longest = max(self.longest, other.longest)
+        self.wrong += other.wrong
 
 
-class FuzzedClient:
-    """Answers as it was recorded, damaged now and then. `chance` is that of a damaged answer."""
+@cache
+def _known() -> tuple[tuple[Place, Seed], ...]:
+    return tuple(waiting_seeds().items())
 
-    name = "fuzzed"
-    describes = "Recorded answers, damaged"
 
-    def __init__(self) -> None:
-        self._recorded = RecordedClient(SAMPLE / "replies")
-        self._lock = threading.Lock()
-        self.chance, self.draw = 0.0, random.Random(0)
-        self.said: list[str] = []
+def reply_of(number: int, seed: int) -> tuple[Place, Seed, random.Random]:
+    """Which question a numbered reply answers, and the source of chance that damages it."""
+    draw = random.Random(f"{seed}/{number}")
+    place, good = draw.choice(_known())
+    return place, good, draw
 
-    def answer(self, prompt: Prompt, cancel: threading.Event, progress: Callable[[str], None] | None = None) -> Reply:
-        """The recorded answer, nothing to add where there is none, or what mutation makes of either."""
+
+def different(place: Place, numbers: Sequence[int], seed: int, row: Row) -> Iterator[tuple[int, BaseModel]]:
+    """Reads these replies, counts them in the row, and gives those that are read and not like one before."""
+    tried: set[bytes] = set()
+    for number in numbers:
+        _, good, draw = reply_of(number, seed)
+        text = mutated(good.data, draw)
+        row.mutated += 1
         try:
-            text = self._recorded.answer(prompt, cancel).text
-        except RoomError:
-            text = json.dumps(empty_value(prompt.schema))
-        with self._lock:
-            if self.draw.random() < self.chance:
-                text = mutated(json.loads(text), self.draw)
-            self.said.append(text)
-        return Reply(text=text, model=self.name)
-
-
-class StageFuzz:
-    """A good run of the sample, whose stages are then done again with damaged answers."""
-
-    def __init__(self, last: str = "s99") -> None:
-        self.client, self.backend = FuzzedClient(), PlainBackend()
-        self.stages = [stage for stage in all_stages() if stage.id < last]
-        self._before: dict[str, tuple[str, str]] = {}
-        self.seconds: Counter[str] = Counter()
-        self._picture = load_picture(SAMPLE / "picture.png")
-        run = Run(self._picture, load_memory(""), self.client, self.backend)
-        run.memory.settings["iterations"] = "1"
-        for stage in self.stages:
-            self._before[stage.id] = (dump_memory(run.memory), self.backend.program_text())
-            run.run_stage(stage)
-
-    def once(self, stage: Any, seed: int) -> str:
-        """Do one stage with damaged answers: "done", or "refused" in words. Raises what is neither."""
-        memory, text = self._before[stage.id]
-        self.client.chance, self.client.draw, self.client.said = 0.7, random.Random(seed), []
-        if text:
-            self.backend.build(text)
-        run = Run(self._picture, load_memory(memory), self.client, self.backend)
-        began = time.perf_counter()
-        try:
-            session = run.begin(stage, fresh=True)
-            while not session.finished:
-                session.step()
-        except RoomError as error:
-            assert error.message, "an error in words"
-            if isinstance(error.__cause__, Exception) and not isinstance(error.__cause__, RoomError):
-                raise error.__cause__ from None
-            return "refused"
-        finally:
-            self.seconds[stage.id] += time.perf_counter() - began  # type: ignore[assignment]
-        for entry in run.memory.entries:
-            assert not list(not_finite(entry)), f"not finite in {entry.kind}"
-        program = self.backend.program_text()
-        if program:
-            assert not list(not_finite(parse_layout(program))), "not finite in the program"
-        assert load_memory(dump_memory(run.memory)).entries
-        return "done"
-
-
-def fuzz_replies(count: int, seed: int) -> tuple[Counter[str], list[str]]:
-    """Read this many mutated replies; how they ended, and what went wrong."""
-    known, ends, wrong = seeds(), Counter[str](), []
-    for number in range(count):
-        draw = random.Random(f"{seed}/{number}")
-        chosen = draw.choice(known)
-        text = mutated(chosen.data, draw)
-        try:
-            ends[read(text, chosen.kind, number % 2 == 0)] += 1
+            reply = read_as(text, good.kind, number % 2 == 0, MODELS[number % len(MODELS)])
         except Exception:
-            wrong.append(f"{seed}/{number} {chosen.name}: {traceback.format_exc(limit=-4)}{text[:300]!r}")
-    return ends, wrong
-
-
-def fuzz_stages(runs: int, seed: int, only: str = "") -> tuple[dict[str, Counter[str]], list[str], StageFuzz]:
-    """Do each stage so often; how they ended, and what went wrong."""
-    fuzz = StageFuzz()
-    ends: dict[str, Counter[str]] = {}
-    wrong: list[str] = []
-    for stage in fuzz.stages:
-        if only not in stage.id:
+            row.wrong.append(f"{number} {'/'.join(place)}: {traceback.format_exc(limit=-4)}{text[:300]!r}")
             continue
-        ends[stage.id] = Counter()
-        for number in range(runs):
-            try:
-                ends[stage.id][fuzz.once(stage, seed * 100_000 + number)] += 1
-            except Exception:
-                wrong.append(f"{stage.id} seed {seed * 100_000 + number}: {traceback.format_exc(limit=-6)}")
-    return ends, wrong, fuzz
+        if reply is None:
+            row.refused += 1
+            continue
+        row.read += 1
+        mark = hashlib.sha256(reply.model_dump_json().encode()).digest()
+        if mark in tried:
+            row.twice += 1
+            continue
+        tried.add(mark)
+        yield number, reply
+
+
+def through(place: Place, numbers: Sequence[int], seed: int, until: float) -> Row:
+    """Read the replies to one question, and give them to its stage until `until` (of `time.monotonic`)."""
+    name, key = place
+    row = Row(key.partition("/")[0])
+    good = dict(_known())[place]
+    waiting: Waiting | None = None
+    for number, reply in different(place, numbers, seed, row):
+        if time.monotonic() > until:
+            row.left += 1
+            continue
+        if waiting is None:
+            waiting = Waiting.warm(rooms()[name], key, good.kind.model_validate(good.data))
+            # What is there is not looked at again: else every copy of the process would copy its memory, too.
+            gc.collect()
+            gc.freeze()
+        end, seconds = waiting.forked(reply)
+        row.seconds += seconds
+        row.longest = max(row.longest, seconds)
+        if end in ("done", "stopped"):
+            row.done += end == "done"
+            row.stopped += end == "stopped"
+        else:
+            row.wrong.append(f"{number} {name}/{key}: {end}")
+    gc.unfreeze()
+    return row
+
+
+def share(part: int, parts: int, count: int, seed: int, minutes: float, kinds: tuple[str, ...] = ("",)) -> list[Row]:
+    """One process' part of the questions, with all of their replies; `kinds` are how the keys of those taken begin."""
+    began = time.monotonic()
+    places = [place for place, _ in _known() if place[1].startswith(kinds)]
+    slow = [place for place in places if place[1].startswith(_SLOW)]
+    mine = [place for place in places if place not in slow][part::parts] + slow[part::parts]
+    numbers: dict[Place, list[int]] = {place: [] for place in mine}
+    for number in range(count):
+        place = reply_of(number, seed)[0]
+        if place in numbers:
+            numbers[place].append(number)
+    rows = []
+    for index, place in enumerate(mine):
+        now = time.monotonic()
+        left = max(0.0, began + 60 * minutes - now)
+        # The quick ones may take what they need.
+        until = now + (left / (len(mine) - index) if place in slow else left)
+        rows.append(through(place, numbers[place], seed, until))
+        print(
+            f"{time.monotonic() - began:6.0f} s  {'/'.join(place)}: {rows[-1].done} done", file=sys.stderr, flush=True
+        )
+    return rows
+
+
+def table(rows: Sequence[Row]) -> str:
+    """The rows by kind, with a sum."""
+    kinds: dict[str, Row] = {}
+    for row in rows:
+        kinds.setdefault(row.kind, Row(row.kind)).add(row)
+    total = Row("all")
+    for row in kinds.values():
+        total.add(row)
+    titles = ("mutated", "refused", "read", "twice", "left", "through", "done", "stopped", "wrong", "s each", "longest")
+    lines = [f"{'kind':<17}" + "".join(f"{title:>9}" for title in titles)]
+    for row in (*sorted(kinds.values(), key=lambda r: r.kind), total):
+        passed = row.done + row.stopped
+        counts = (
+            row.mutated,
+            row.refused,
+            row.read,
+            row.twice,
+            row.left,
+            passed,
+            row.done,
+            row.stopped,
+            len(row.wrong),
+        )
+        each = row.seconds / max(1, passed)
+        lines.append(f"{row.kind:<17}" + "".join(f"{n:>9}" for n in counts) + f"{each:>9.3f}{row.longest:>9.2f}")
+    return "\n".join(lines)
+
+
+def once(number: int, seed: int) -> str:
+    """Do one numbered reply here and now, without catching anything."""
+    place, good, draw = reply_of(number, seed)
+    text = mutated(good.data, draw)
+    print("/".join(place), text, sep="\n")
+    reply = read_as(text, good.kind, number % 2 == 0, MODELS[number % len(MODELS)])
+    return "refused" if reply is None else Waiting(rooms()[place[0]], place[1]).go_on(reply)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Print what came of it; 1 where anything but a result or an error of ours did."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--replies", type=int, default=100_000, help="mutated replies to read")
-    parser.add_argument("--runs", type=int, default=60, help="runs of each stage with damaged answers")
-    parser.add_argument("--stage", default="", help="only this one")
-    parser.add_argument("--seed", type=int, default=1)
-    options = parser.parse_args(arguments)
-    began = time.perf_counter()
-    ends, wrong = fuzz_replies(options.replies, options.seed)
-    took = time.perf_counter() - began
-    print(
-        f"{options.replies} replies in {took:.0f} s: {ends['read']} read, {ends['refused']} refused, {len(wrong)} wrong"
+    parser.add_argument("--minutes", type=float, default=25.0, help="time for the stages that read them")
+    parser.add_argument("--processes", type=int, default=2)
+    parser.add_argument(
+        "--runs", type=int, default=3, help="runs of each whole stage of the full sample with damaged answers"
     )
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--kinds", default="", help="only questions whose keys begin so, such as 01_analysis,06")
+    parser.add_argument("--only", type=int, help="the reply of this number, with everything it raises")
+    options = parser.parse_args(arguments)
+    if options.only is not None:
+        print(once(options.only, options.seed))
+        return 0
+    began = time.perf_counter()
+    parts = max(1, options.processes)
+    with ProcessPoolExecutor(parts, mp_context=get_context("spawn")) as pool:
+        given = (parts, options.replies, options.seed, options.minutes, tuple(options.kinds.split(",")))
+        work = [pool.submit(share, n, *given) for n in range(parts)]
+        rows = [row for done in work for row in done.result()]
+    read = sum(row.mutated for row in rows)
+    print(f"{read} replies, seed {options.seed}, {parts} processes, {time.perf_counter() - began:.0f} s")
+    print(table(rows))
+    wrong = [text for row in rows for text in row.wrong]
     if options.runs:
-        by_stage, failed, fuzz = fuzz_stages(options.runs, options.seed, options.stage)
+        by_stage, failed, fuzz = fuzz_stages(options.runs, options.seed)
         for name, counted in by_stage.items():
             each = fuzz.seconds[name] / options.runs
             print(f"{name:<18}{counted['done']:5} done{counted['refused']:5} refused   {each:7.2f} s each")

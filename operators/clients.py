@@ -24,6 +24,7 @@ from ..pipeline.models.routing import GROUPS, TEXT
 from .guarded import NOBODY, OFFLINE, GuardedClient, watch_online_access
 
 if TYPE_CHECKING:
+    from ..pipeline.draft.refine import Step
     from ..pipeline.models.prices import Price, PriceList
     from ..pipeline.spending import Meter, RunEstimate
 
@@ -219,6 +220,22 @@ def run_estimate(stages: Sequence[str], rounds: int) -> RunEstimate | None:
     if not settings.is_service:
         return None
     return estimate_run(stages, rounds, price_lookup(prices(), settings))
+
+
+def refine_estimate(steps: Sequence[Step]) -> RunEstimate | None:
+    """What refining a draft may cost; None where nothing is asked of a service.
+
+    Raises:
+        RoomError: as `run_estimate`.
+    """
+    settings = client_settings()
+    from ..pipeline.draft.refine import estimate
+    from ..pipeline.models.prices import FREE
+    from ..pipeline.spending import price_lookup
+
+    if settings.kind == "manual":
+        return estimate(steps, lambda stage: ("", FREE))
+    return estimate(steps, price_lookup(prices(), settings)) if settings.is_service else None
 
 
 def prices() -> PriceList:

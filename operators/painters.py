@@ -26,6 +26,7 @@ from ..pipeline.models.image_registry import (
 from ..pipeline.models.presets import own_key_variable
 from ..pipeline.textures.kept import KeptImages
 from . import clients
+from .guarded import GuardedPainter
 
 if TYPE_CHECKING:
     from ..pipeline.models.image_base import ImageClient, ImageRequest, PaintedImage
@@ -161,30 +162,3 @@ class NoPainter:
     ) -> PaintedImage:
         """Always ModelError."""
         raise ModelError(f"No image was painted. {self._error.message}", self._error.fix)
-
-
-class GuardedPainter:
-    """An image client on the network. Before every image it looks whether Blender's online access is still on.
-
-    Worker threads must not read `bpy.app`, so the main thread looks for them: `watch` is called on every tick.
-    """
-
-    def __init__(self, inner: ImageClient) -> None:
-        self.inner = inner
-        self.name, self.describes = inner.name, inner.describes
-        self.online = False
-
-    def watch(self) -> None:
-        """Look whether online access is on. Main thread only."""
-        self.online = bool(bpy.app.online_access)
-
-    def paint(
-        self, request: ImageRequest, cancel: threading.Event, progress: Callable[[str], None] | None = None
-    ) -> PaintedImage:
-        """As `ImageClient.paint`; ModelError when online access is off."""
-        if not self.online:
-            raise ModelError(
-                "Blender's online access is off, so the image model was not asked.",
-                "Allow it in Preferences, System, Network.",
-            )
-        return self.inner.paint(request, cancel, progress)

@@ -8,11 +8,12 @@ import threading
 import time
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from pydantic import BaseModel
 
+from .ask_plain import plain_reply, without_thoughts
 from .ask_shared import mark_shared
 from .ask_talk import TALK
 from .errors import Cancelled, ModelError, NotRecordedError, ReplyError, RoomError
@@ -60,10 +61,13 @@ class AskResult:
 
 @dataclass(frozen=True)
 class AskEvent:
-    """Something worth showing while requests run; `text` is for the artist."""
+    """Something worth showing while requests run; `text` is for the artist.
+
+    Of the kind "heard" it is all of a plain text that has arrived so far; each one may replace those before it.
+    """
 
     key: str
-    kind: Literal["asked", "progress", "repair", "answered", "recalled", "failed"]
+    kind: Literal["asked", "progress", "repair", "answered", "recalled", "failed", "heard"]
     text: str
 
 
@@ -144,12 +148,19 @@ def _run(
         return errors
     events: queue.SimpleQueue[AskEvent | tuple[int, Future[AskResult | None]]] = queue.SimpleQueue()
     give_up = threading.Event()
+    newest: dict[str, AskEvent] = {}
+
+    def put(event: AskEvent) -> None:
+        if event.kind == "heard":
+            # Texts are heard faster than they can be looked at: only the newest waits, and the queue just says so.
+            newest[event.key], event = event, replace(event, text="")
+        events.put(event)
 
     def work(index: int) -> AskResult | None:
         if give_up.is_set() or cancel.is_set():
             return None
         try:
-            return _answer(ask.requests[index], prompts[index], client, cancel, events.put)
+            return _answer(ask.requests[index], prompts[index], client, cancel, put)
         except RoomError as error:
             # An unusable answer concerns its own request; a failing service concerns all of them.
             if not isinstance(error, _OWN_FAILURES if ask.optional else ReplyError):
@@ -170,7 +181,9 @@ def _run(
             except queue.Empty:
                 continue
             if isinstance(event, AskEvent):
-                tell(event)
+                heard = newest.pop(event.key, None) if event.kind == "heard" else event
+                if heard is not None:
+                    tell(heard)
                 continue
             waiting -= 1
             _collect(*event, ask, results, errors, keep, tell)
@@ -241,11 +254,22 @@ def _answer(request: Request, prompt: Prompt, client: ModelClient, cancel: threa
     def call(sent: Prompt) -> str:
         if sent.repair:
             TALK.note_repair(prompt, sent)
+        heard = ""
+
+        def hear(text: str) -> None:
+            nonlocal heard
+            heard = text
+            put(AskEvent(request.key, "heard", without_thoughts(text)))
+
+        if sent.plain:
+            sent = replace(sent, hear=hear)
         reply = client.answer(sent, cancel, lambda text: put(AskEvent(request.key, "progress", text)))
         said.append((sent, reply))
         TALK.note_reply(sent, reply)
         if isinstance(reply, KeptReply):
             put(AskEvent(request.key, "recalled", "the earlier answer is used again"))
+        if sent.plain and heard != reply.text:
+            hear(reply.text)  # whoever answered: the last that is heard is the whole
         return reply.text
 
     put(AskEvent(request.key, "asked", f"asking {name_of(client, prompt.stage)}"))
@@ -278,6 +302,8 @@ def _read(
     text: str, request: Request, prompt: Prompt, model: str, salvage: bool = False
 ) -> tuple[BaseModel, tuple[str, ...]]:
     """An answer as the request's type, with places in the picture brought to what was asked for; see `validate_reply`."""
+    if prompt.plain:
+        return plain_reply(text), ()
     return validate_reply(
         text, request.reply, salvage, lambda data: as_asked(data, model, sizes_seen(prompt.images, model))
     )

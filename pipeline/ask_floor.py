@@ -72,7 +72,7 @@ class FloorClient:
 
     def answer(self, prompt: Prompt, cancel: threading.Event, progress: Callable[[str], None] | None = None) -> Said:
         """Answer one prompt; see `ModelClient.answer`."""
-        if not self._is_weak(prompt.stage, len(prompt.images)):
+        if prompt.plain or not self._is_weak(prompt.stage, len(prompt.images)):
             return self.inner.answer(prompt, cancel, progress)
         place, said = (prompt.stage, prompt.key), None
         blind = self._blind.get(self.name_for(prompt.stage)) if prompt.images else None

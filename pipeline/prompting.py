@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from importlib.resources import files
 
+from .artifacts.replies import PlainReply
 from .errors import RoomError
 from .models.base import Prompt
 from .models.schema import strict_schema
@@ -68,16 +69,17 @@ def make_prompt(request: Request, stage: str) -> Prompt:
     """
     text = fill_template(load_template(request.prompt), request.values)
     images = tuple(picture.data for picture in request.images)
-    name = request.reply.__name__
+    name, plain = request.reply.__name__, issubclass(request.reply, PlainReply)
     return Prompt(
         stage=stage,
         key=request.key,
         text=text,
         images=images,
         schema_name=name,
-        schema=strict_schema(request.reply),
+        schema={} if plain else strict_schema(request.reply),
         hash=prompt_hash(text, images, name),
         facts=request.facts,
+        plain=plain,
     )
 
 
@@ -85,7 +87,8 @@ def repair_prompt(prompt: Prompt, problems: Sequence[str], answer: str) -> Promp
     """The second try: the same prompt with the earlier answer (as much as fits) and what is wrong with it."""
     lines = "\n".join(f"- {problem}" for problem in problems)
     head = f"{prompt.text}\n\n---\nYour earlier answer to this could not be used:\n{lines}\n"
-    tail = "\nAnswer again in full, as one JSON object, with these points mended and everything else kept."
+    shape = "" if prompt.plain else " as one JSON object,"
+    tail = f"\nAnswer again in full,{shape} with these points mended and everything else kept."
     room = max(4_000, PROMPT_LIMIT - len(head.encode()) - len(tail.encode()) - 100)
     kept = answer.encode()[:room].decode("utf-8", "ignore")
     quoted = ""

@@ -18,12 +18,12 @@ from PIL import Image
 
 from .errors import Cancelled, ModelError, ReplyError
 from .models.base import ModelClient, Prompt, Reply, name_of
-from .models.pace import WAITING
 from .models.prices import Price, PriceList, bundled_prices
 from .models.registry import ClientSettings
 from .models.routing import model_of
 from .models.schema import shape_text
 from .spending_estimate import RunEstimate, StageWork, estimate_run, money, stage_work
+from .spending_meter import Meter, SpendingError
 
 __all__ = [
     "CappedClient",
@@ -47,7 +47,7 @@ BYTES_A_TOKEN = 3.4
 """Of prompts in English and JSON; rather few, so that an estimate is rather high."""
 _PIXELS_A_TOKEN = 700.0
 _PICTURE_LEAST, _PICTURE_MOST = 260, 4800
-_ANSWER_TOKENS = {"s01_analysis": 9_000, "s02_graph": 4_000, "s03_layout": 3_000, "s04_auxiliary": 3_000,
+_ANSWER_TOKENS = {"s00_draft": 24_000, "s01_analysis": 9_000, "s02_graph": 4_000, "s03_layout": 3_000, "s04_auxiliary": 3_000,
                   "s05_descriptions": 2_000, "s06_geometry": 12_000}  # fmt: skip
 """Expected length of an answer, thinking included."""
 _ANSWER_ELSE = 6_000
@@ -59,10 +59,6 @@ class PriceOf(Protocol):
     def __call__(self, stage: str, pictures: int = 1) -> tuple[str, Price | None]:
         """For a stage's id, and how many pictures the question has."""
         ...
-
-
-class SpendingError(ModelError):
-    """The request was not sent: it would pass the spending cap, or its price is not known."""
 
 
 @dataclass(frozen=True)
@@ -98,90 +94,6 @@ def estimate_prompt(prompt: Prompt, price: Price | None, longest_answer: int = 0
     return Estimate(sent, answered, None if price is None else price.of(sent, answered, written=kept))
 
 
-class Meter:
-    """The running total of one room.
-
-    Args:
-        cap: most US dollars, 0 for no cap; spent: what was spent before, as memory knows it.
-    """
-
-    def __init__(self, cap: float = 0.0, spent: float = 0.0) -> None:
-        self.cap = cap
-        self._spent = spent
-        self._reserved = 0.0
-        self._unpriced: set[str] = set()
-        self._tokens = [0, 0]
-        self._cached = 0
-        self._longest: dict[str, int] = {}
-        self._lock = threading.Lock()
-
-    @property
-    def spent(self) -> float:
-        """US dollars so far, as far as prices are known."""
-        with self._lock:
-            return self._spent
-
-    @property
-    def tokens(self) -> tuple[int, int]:
-        """Tokens sent and answered since this meter began."""
-        with self._lock:
-            return self._tokens[0], self._tokens[1]
-
-    @property
-    def cached(self) -> int:
-        """Of the tokens sent, those that services had kept from earlier prompts."""
-        with self._lock:
-            return self._cached
-
-    @property
-    def unpriced(self) -> tuple[str, ...]:
-        """Models that answered without a known price; the total does not have them."""
-        with self._lock:
-            return tuple(sorted(self._unpriced))
-
-    def raise_to(self, spent: float) -> None:
-        """Memory knows of more than this meter, as after a load. What was lost with an undo stays spent."""
-        with self._lock:
-            self._spent = max(self._spent, spent)
-
-    def longest(self, stage: str) -> int:
-        """Tokens of the longest answer of a stage so far."""
-        with self._lock:
-            return self._longest.get(stage, 0)
-
-    def reserve(self, dollars: float) -> None:
-        """Set the money of a request aside before it is sent.
-
-        Raises:
-            SpendingError: it would pass the cap; nothing is set aside.
-        """
-        with self._lock:
-            expected = self._spent + self._reserved + dollars
-            if self.cap > 0 and expected > self.cap:
-                before = f"{money(self._spent)} of {money(self.cap)} is spent"
-                raise SpendingError(
-                    f"The next question may cost about {money(dollars)} and would pass the room's spending cap: {before}.",
-                    "Raise the cap in the preferences, or choose a cheaper model. What was answered is kept.",
-                )
-            self._reserved += dollars
-
-    def settle(self, reserved: float, spent: float) -> None:
-        """A request has ended: its money is free again, and what it really cost is counted."""
-        with self._lock:
-            self._reserved = max(0.0, self._reserved - reserved)
-            self._spent += spent
-
-    def note(self, stage: str, reply: Reply, model: str, priced: bool) -> None:
-        """Remember what an answer took."""
-        with self._lock:
-            self._tokens[0] += reply.prompt_tokens
-            self._tokens[1] += reply.completion_tokens
-            self._cached += reply.cached_tokens
-            self._longest[stage] = max(self._longest.get(stage, 0), reply.completion_tokens)
-            if not priced:
-                self._unpriced.add(model)
-
-
 class CappedClient:
     """A client whose every question is priced before it is sent and counted after it was answered.
 
@@ -205,43 +117,24 @@ class CappedClient:
             SpendingError: the question would pass the cap, or there is a cap and the price is not known. Nothing was sent.
         """
         model, price = self._price_of(prompt.stage, len(prompt.images))
-        if price is None and self.meter.cap > 0:
-            raise SpendingError(
-                f"The price of {model} is not known, so the spending cap cannot be kept.",
-                "Set its price in the preferences, or set the cap to 0.",
-            )
         estimate = estimate_prompt(prompt, price, self.meter.longest(prompt.stage))
-        reserved = estimate.dollars or 0.0
-        self.meter.reserve(reserved)
-        spent, sent = 0.0, threading.Event()
-
-        def tell(text: str) -> None:
-            if text != WAITING:
-                sent.set()
-            if progress:
-                progress(text)
-
-        try:
-            reply = self.inner.answer(prompt, cancel, tell)
+        fix = "Set its price in the preferences, or set the cap to 0."
+        with self.meter.request(estimate.dollars, f"The price of {model}", fix, progress) as spending:
+            try:
+                reply = self.inner.answer(prompt, cancel, spending.tell)
+            except ReplyError:
+                # It was answered, so it is paid for; how long the answer was is not known.
+                spending.spent = spending.reserved
+                raise
+            except (Cancelled, ModelError) as error:
+                if spending.is_billed(error):
+                    spending.spent = _sent_only(price, estimate)
+                raise
             if reply.cost is None and price is not None:
                 reply = replace(reply, cost=_cost(reply, price, estimate))
-            spent = reply.cost or 0.0
+            spending.spent = reply.cost or 0.0
             self.meter.note(prompt.stage, reply, model, reply.cost is not None)
-        except ReplyError:
-            # It was answered, so it is paid for; how long the answer was is not known.
-            spent = reserved
-            raise
-        except ModelError as error:
-            if getattr(error, "kind", "") == "timeout" and sent.is_set():
-                spent = _sent_only(price, estimate)
-            raise
-        except Cancelled:
-            # A service that has begun to read bills that, whoever hangs up.
-            spent = _sent_only(price, estimate) if sent.is_set() else 0.0
-            raise
-        finally:
-            self.meter.settle(reserved, spent)
-        return reply
+            return reply
 
 
 def _cost(reply: Reply, price: Price, estimate: Estimate) -> float:

@@ -26,6 +26,7 @@ def stage_work(stage: str, rounds: int) -> StageWork:
         rounds: most rounds of the layout loop.
     """
     known = {
+        "s00_draft": StageWork(1, 4, 10_000, 16_000),
         "s01_analysis": StageWork(2, 4, 9_000, 5_000),
         "s02_graph": StageWork(1, 2, 4_000, 2_500),
         "s03_layout": StageWork(min(1, rounds), max(0, rounds), 7_000, 2_000),

@@ -11,8 +11,7 @@ from .errors import Cancelled, ModelError
 from .models.addresses import is_local_url
 from .models.image_base import ImageClient, ImageRequest, PaintedImage
 from .models.image_registry import ImageSettings
-from .models.pace import WAITING
-from .spending import Meter, SpendingError
+from .spending_meter import Meter
 
 
 class CappedPainter:
@@ -34,36 +33,18 @@ class CappedPainter:
         Raises:
             SpendingError: it would pass the cap, or there is a cap and the price is not known. Nothing was sent.
         """
-        if self._price is None and self.meter.cap > 0:
-            raise SpendingError(
-                "The price of an image is not known, so the spending cap cannot be kept.",
-                "Set the price of an image in the preferences, or set the cap to 0.",
-            )
-        reserved = self._price or 0.0
-        self.meter.reserve(reserved)
-        spent, sent = 0.0, threading.Event()
-
-        def tell(text: str) -> None:
-            if text != WAITING:
-                sent.set()
-            if progress:
-                progress(text)
-
-        try:
-            made = self.inner.paint(request, cancel, tell)
+        fix = "Set the price of an image in the preferences, or set the cap to 0."
+        with self.meter.request(self._price, "The price of an image", fix, progress) as spending:
+            try:
+                made = self.inner.paint(request, cancel, spending.tell)
+            except (Cancelled, ModelError) as error:
+                if spending.is_billed(error):
+                    spending.spent = spending.reserved
+                raise
             if made.cost is None and self._price is not None:
                 made = replace(made, cost=self._price)
-            spent = made.cost or 0.0
-        except Cancelled:
-            # A service that has begun to paint bills the image, whoever hangs up.
-            spent = reserved if sent.is_set() else 0.0
-            raise
-        except ModelError as error:
-            spent = reserved if getattr(error, "kind", "") == "timeout" else 0.0
-            raise
-        finally:
-            self.meter.settle(reserved, spent)
-        return made
+            spending.spent = made.cost or 0.0
+            return made
 
 
 def metered_painter(client: ImageClient | None, settings: ImageSettings, meter: Meter) -> ImageClient | None:

@@ -20,6 +20,12 @@ class Reply(BaseModel):
     model_config = ConfigDict(extra="ignore")
 
 
+class PlainReply(Reply):
+    """An answer that is a text as it is, such as a program: it is not read as JSON, and its beginning is of use too."""
+
+    text: str
+
+
 class PointReply(Reply):
     """A point of the picture, 0-1000 of its width (x, right) and height (y, down)."""
 

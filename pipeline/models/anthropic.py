@@ -114,7 +114,7 @@ class AnthropicClient(HttpClient):
             # What is kept must come first, and pictures stand before the text of their message: so it is a system prompt.
             marked = {"cache_control": {"type": "ephemeral"}} if habits.cache else {}
             body["system"] = [{"type": "text", "text": shared, **marked}]
-        if habits.structure == "schema":
+        if habits.structure == "schema" and not prompt.plain:
             body["output_config"] = {"format": {"type": "json_schema", "schema": dict(prompt.schema)}}
         if habits.stream:
             body["stream"] = True

@@ -20,6 +20,9 @@ class Prompt:
         hash: sha256 of text and pictures, hexadecimal; recordings keep it to notice drift.
         facts: typed data for the built-in client only.
         repair: True for the second try that quotes validation errors back.
+        plain: the answer is a text as it is: no schema is sent or described.
+        hear: called in the worker thread with all of the answer that has arrived so far, at most every tenth of a second
+            and once with the whole; after another try it may begin again with less. It must not raise.
         shared: how many characters at the beginning of `text` other prompts that are asked with it begin with too, 0
             when that is too little to matter; services keep such beginnings, so that they cost less.
     """
@@ -34,6 +37,8 @@ class Prompt:
     facts: Mapping[str, Any] = field(default_factory=dict)
     repair: bool = False
     shared: int = 0
+    plain: bool = False
+    hear: Callable[[str], None] | None = field(default=None, compare=False, repr=False)
 
     def halves(self) -> tuple[str, str]:
         """The text's shared beginning, "" when there is none, and the rest; together they are the text."""

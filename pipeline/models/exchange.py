@@ -40,7 +40,8 @@ class Call:
     """A request: where to, what (None for a GET), and the headers.
 
     `key` is sent in the header `key_header`, as a bearer token where that is "Authorization"; not at all when it is
-    empty. `enough` is fed every piece of a successful reply and says when the rest need not be waited for.
+    empty. `enough` is fed every piece of a successful reply and says when the rest need not be waited for; `meanwhile` is
+    called again and again on the calling thread while the reply is waited for.
     """
 
     url: str
@@ -50,6 +51,7 @@ class Call:
     headers: Mapping[str, str] = field(default_factory=dict)
     route: Route = Route()
     enough: Callable[[bytes], bool] = lambda piece: False
+    meanwhile: Callable[[], None] = lambda: None
 
 
 @dataclass(frozen=True)
@@ -91,6 +93,7 @@ def exchange(
                 raise Cancelled
             if time.monotonic() >= deadline:
                 raise _fault(f"The service at {host} took longer than the time limit.", _LONGER, "timeout")
+            call.meanwhile()
             try:
                 item = outcome.get(timeout=_TICK)
             except queue.Empty:

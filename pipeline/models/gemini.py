@@ -104,6 +104,8 @@ class GeminiClient(HttpClient):
         ]
         parts.append({"text": rest})
         body: dict[str, Any] = {"contents": [{"role": "user", "parts": parts}]}
+        if prompt.plain:
+            return body
         if habits.structure != "none":
             body["generationConfig"] = {"responseMimeType": "application/json"}
         if habits.structure == "schema":

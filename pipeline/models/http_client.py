@@ -10,19 +10,19 @@ from __future__ import annotations
 import base64
 import json
 import threading
-import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 from .base import Prompt, Reply
 from .endpoint import Endpoint
-from .exchange import Answer, Call, exchange
-from .faults import Fault, status_fault
+from .exchange import Call, exchange
+from .faults import Fault
+from .hearing import Hearing
 from .limits import Limits, Route
-from .pace import MOST, Pace
+from .pace import Pace
 from .reply_reader import ReplyReader
-from .retry import RetryPolicy, with_retries
+from .retry import RetryPolicy
 from .schema import shape_text
 from .sight import Sight, fitted
 from .warming import Warming
@@ -74,11 +74,8 @@ class HttpClient(Endpoint):
         route: Route | None = None,
         pace: Pace | None = None,
     ) -> None:
-        super().__init__(base_url, model, api_key, route)
-        self.pace = pace or Pace(MOST)
+        super().__init__(base_url, model, api_key, limits, retries, route, pace)
         self._warming = Warming()
-        self._limits = limits or Limits()
-        self._retries = retries or RetryPolicy()
         self._habits = self.first_habits
         self._lock = threading.Lock()
 
@@ -111,18 +108,7 @@ class HttpClient(Endpoint):
 
     def plain_call(self, path: str, body: bytes | None = None) -> Call:
         """A request beside the questions, such as for the list of models: a GET, or a POST of this body."""
-        return Call(
-            url=self.base_url + path,
-            body=body,
-            key=self._key,
-            key_header=self.key_header,
-            headers={"Accept": "application/json", **self.headers()},
-            route=self._route,
-        )
-
-    def fault(self, answer: Answer) -> Fault:
-        """The fault for an answer with a status other than 200."""
-        return status_fault(answer.status, answer.body, answer.headers, self.host, self._key)
+        return self.call(self.base_url + path, body, headers=self.headers())
 
     def answer(self, prompt: Prompt, cancel: threading.Event, progress: Callable[[str], None] | None = None) -> Reply:
         """Ask the service; see `ModelClient.answer`.
@@ -134,21 +120,10 @@ class HttpClient(Endpoint):
             Cancelled: `cancel` was set.
         """
         prompt = replace(prompt, images=fitted(prompt.images, self.sight))
-        with self.pace.turn(cancel, progress):
-            # Waiting for a turn is not the service's slowness.
-            started = time.monotonic()
-            deadline = started + self._limits.total
-            reply = with_retries(
-                lambda: self._paced(prompt, deadline, cancel, progress), self._retries, deadline, cancel, progress
-            )
-            return replace(reply, seconds=time.monotonic() - started)
-
-    def _paced(
-        self, prompt: Prompt, deadline: float, cancel: threading.Event, progress: Callable[[str], None] | None
-    ) -> Reply:
-        """One try, from which all clients of the service learn."""
-        with self.pace.noting(self._retries.patience):
-            return self._negotiate(prompt, deadline, cancel, progress)
+        reply, seconds = self.in_turn(
+            lambda deadline: self._negotiate(prompt, deadline, cancel, progress), cancel, progress
+        )
+        return replace(reply, seconds=seconds)
 
     def _negotiate(
         self, prompt: Prompt, deadline: float, cancel: threading.Event, progress: Callable[[str], None] | None
@@ -160,7 +135,8 @@ class HttpClient(Endpoint):
                 return self._once(prompt, habits, deadline, cancel, progress)
             except Fault as fault:
                 humbler = self.humbler(habits, fault)
-                if humbler is None:
+                if humbler is None or (prompt.plain and humbler.structure != habits.structure):
+                    # What was not asked for was not refused.
                     raise
             with self._lock:
                 # Another request may have learnt more in the meantime; never go back.
@@ -189,28 +165,28 @@ class HttpClient(Endpoint):
         answering: Callable[[], None],
     ) -> Reply:
         """Send it and read the reply; `answering` is called when the reply begins."""
-        reader = self.reader(self.host, self._key)
+        reader, hearing = self.reader(self.host, self._key, prompt.plain), Hearing(prompt)
 
         def take(piece: bytes) -> bool:
             answering()
             return reader.feed(piece)
 
         accept = "text/event-stream, application/json" if habits.stream else "application/json"
-        call = Call(
-            url=self.url(habits),
-            body=json.dumps(self.body(prompt, habits)).encode(),
-            key=self._key,
-            key_header=self.key_header,
+        call = self.call(
+            self.url(habits),
+            json.dumps(self.body(prompt, habits)).encode(),
             headers={"Accept": accept, **self.headers()},
-            route=self._route,
             enough=take,
+            meanwhile=lambda: hearing.so_far(reader.so_far),
         )
         # A one-shot answer sends nothing until it is complete, so only the total limit can end it.
         limits = self._limits if habits.stream else replace(self._limits, read=self._limits.total)
         answer = exchange(call, limits, deadline, cancel, progress)
         if answer.status != 200:
             raise self.fault(answer)
-        return reader.finish(answer.headers.get("Content-Type", ""), self.model)
+        reply = reader.finish(answer.headers.get("Content-Type", ""), self.model)
+        hearing.whole(reply.text)
+        return reply
 
     def humbler(self, habits: Habits, fault: Fault) -> Habits | None:
         """What to ask for instead after a refusal that names a feature; None when it names none."""
@@ -244,4 +220,6 @@ def picture_text(image: bytes) -> str:
 
 def with_schema(prompt: Prompt) -> str:
     """The prompt's text with the answer's schema in words, for services that do not take it otherwise."""
+    if prompt.plain:
+        return prompt.text
     return f"{prompt.text}\n\nAnswer with one JSON object that fits this JSON schema:\n{shape_text(prompt.schema)}"

@@ -8,7 +8,6 @@ import binascii
 import io
 import json
 import threading
-import time
 import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -21,10 +20,9 @@ from .addresses import is_local_url
 from .endpoint import Endpoint
 from .error_bodies import body_fault
 from .exchange import Answer, Call, exchange
-from .faults import Fault, FaultKind, ServiceError, plain, quoted, status_fault
-from .limits import Limits, Route
-from .pace import Pace
-from .retry import RetryPolicy, with_retries
+from .faults import Fault, FaultKind, ServiceError, plain, quoted
+from .limits import Limits
+from .retry import RetryPolicy
 
 Proportions = Literal["square", "wide", "tall"]
 LARGEST_REPLY = 40_000_000
@@ -93,20 +91,9 @@ class ImageHttpClient(Endpoint):
     """
 
     what = "image model"
-
-    def __init__(
-        self,
-        base_url: str,
-        model: str,
-        api_key: str = "",
-        limits: Limits | None = None,
-        retries: RetryPolicy | None = None,
-        route: Route | None = None,
-        pace: Pace | None = None,
-    ) -> None:
-        super().__init__(base_url, model, api_key, route)
-        self.pace = pace or Pace(SIDE_BY_SIDE)
-        self._limits, self._retries = limits or IMAGE_LIMITS, retries or IMAGE_RETRIES
+    usual_limits = IMAGE_LIMITS
+    usual_retries = IMAGE_RETRIES
+    usual_pace = SIDE_BY_SIDE
 
     def url(self) -> str:
         """Where a request is sent."""
@@ -124,24 +111,8 @@ class ImageHttpClient(Endpoint):
         self, request: ImageRequest, cancel: threading.Event, progress: Callable[[str], None] | None = None
     ) -> PaintedImage:
         """See `ImageClient.paint`."""
-        with self.pace.turn(cancel, progress):
-            started = time.monotonic()
-            deadline = started + self._limits.total
-            made = with_retries(
-                lambda: self._paced(request, deadline, cancel, progress), self._retries, deadline, cancel, progress
-            )
-            return replace(made, seconds=time.monotonic() - started)
-
-    def _paced(
-        self,
-        request: ImageRequest,
-        deadline: float,
-        cancel: threading.Event,
-        progress: Callable[[str], None] | None,
-    ) -> PaintedImage:
-        """One try, from which the others learn."""
-        with self.pace.noting(self._retries.patience):
-            return self._once(request, deadline, cancel, progress)
+        made, seconds = self.in_turn(lambda deadline: self._once(request, deadline, cancel, progress), cancel, progress)
+        return replace(made, seconds=seconds)
 
     def _once(
         self,
@@ -150,14 +121,7 @@ class ImageHttpClient(Endpoint):
         cancel: threading.Event,
         progress: Callable[[str], None] | None,
     ) -> PaintedImage:
-        call = Call(
-            url=self.url(),
-            body=json.dumps(self.body(request)).encode(),
-            key=self._key,
-            key_header=self.key_header,
-            headers={"Accept": "application/json"},
-            route=self._route,
-        )
+        call = self.call(self.url(), json.dumps(self.body(request)).encode())
         answer = exchange(call, self._limits, deadline, cancel, progress)
         if answer.status != 200:
             raise self.fault(answer)
@@ -169,7 +133,7 @@ class ImageHttpClient(Endpoint):
 
     def fault(self, answer: Answer) -> Fault:
         """The fault for an answer with a status other than 200; what a safety filter says is a refusal."""
-        return self._told(status_fault(answer.status, answer.body, answer.headers, self.host, self._key), answer)
+        return self._told(super().fault(answer), answer)
 
     def _told(self, fault: Fault, answer: Answer) -> Fault:
         """The fault, or a refusal where the service's words are those of a safety filter."""
@@ -257,11 +221,6 @@ def from_base64(text: Any) -> bytes | None:
         return base64.b64decode(text, validate=False) or None
     except (binascii.Error, ValueError):
         return None
-
-
-def count_of(value: Any) -> int:
-    """A count in a reply, 0 where it is none."""
-    return value if isinstance(value, int) and not isinstance(value, bool) and value > 0 else 0
 
 
 FINAL_KINDS: frozenset[FaultKind] = frozenset(

@@ -7,7 +7,8 @@ from collections.abc import Callable, Mapping
 from typing import Any
 from urllib.parse import quote
 
-from .image_base import ImageHttpClient, ImageRequest, PaintedImage, count_of, from_base64
+from .image_base import ImageHttpClient, ImageRequest, PaintedImage, from_base64
+from .reply_reader import count
 
 _SHAPES = {"square": "1:1", "wide": "3:2", "tall": "2:3"}
 
@@ -54,7 +55,7 @@ class GeminiImageClient(ImageHttpClient):
                 image = from_base64(inline.get("data")) if isinstance(inline, dict) else None
                 if image is not None:
                     usage = data.get("usageMetadata")
-                    tokens = count_of(usage.get("candidatesTokenCount")) if isinstance(usage, dict) else 0
+                    tokens = count(usage.get("candidatesTokenCount")) if isinstance(usage, dict) else 0
                     model = data.get("modelVersion")
                     return PaintedImage(image, model if isinstance(model, str) else self.model, tokens=tokens)
                 if isinstance(part.get("text"), str):

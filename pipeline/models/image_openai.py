@@ -6,7 +6,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from .image_base import ImageHttpClient, ImageRequest, PaintedImage, count_of, from_base64
+from .image_base import ImageHttpClient, ImageRequest, PaintedImage, from_base64
+from .reply_reader import count
 
 _SIZES = {"square": "1024x1024", "wide": "1536x1024", "tall": "1024x1536"}
 
@@ -38,5 +39,5 @@ class OpenAIImageClient(ImageHttpClient):
         if image is None:
             raise self.foreign("an empty reply")
         usage = data.get("usage")
-        tokens = count_of(usage.get("output_tokens")) if isinstance(usage, dict) else 0
+        tokens = count(usage.get("output_tokens")) if isinstance(usage, dict) else 0
         return PaintedImage(image, self.model, tokens=tokens)

@@ -16,6 +16,7 @@ from pathlib import Path
 
 from ..errors import Cancelled, CutReplyError, NotRecordedError, ReplyError, RoomError
 from .base import Prompt, Reply
+from .hearing import Hearing
 from .manual_pictures import SavedPictures, remove_pictures, save_pictures
 from .schema import shape_text
 from .tolerant import read_json
@@ -163,6 +164,7 @@ class ManualClient:
                 self._desk.withdraw(question)
         finally:
             remove_pictures(saved)
+        Hearing(prompt).whole(text)
         return Reply(text=text, model="a chat, by hand", seconds=time.monotonic() - started)
 
 
@@ -178,6 +180,8 @@ def question_text(prompt: Prompt) -> str:
             f"Pictures 1 to {count} are attached, in this order. Where only one is attached, it shows all of them, each "
             "under its number; coordinates in a picture then still mean that picture alone.\n\n"
         )
+    if prompt.plain:
+        return f"{head}{prompt.text}"
     shape = shape_text(prompt.schema)
     tail = f"Answer with one JSON object that fits this JSON schema, in full, and write nothing else:\n{shape}"
     return f"{head}{prompt.text}\n\n{tail}"
@@ -200,6 +204,8 @@ def check_answer(question: Question, text: str, last: str = "") -> None:
         raise RoomError("This is the prompt itself.", "Paste it into the chat; then copy the chat's answer.")
     if last and text == last:
         raise ReplyError("This is the answer to the question before.", "Copy the answer to this one.")
+    if question.prompt.plain:
+        return
     try:
         read_json(text)
     except CutReplyError:

@@ -11,7 +11,7 @@ from .http_client import Habits, HttpClient, picture_text, with_schema
 from .reply_reader import ReplyReader, count
 
 _LEAST_CONTEXT = 16_384
-_ANSWER_TOKENS = 10_000
+_ANSWER_TOKENS, _PLAIN_ANSWER_TOKENS = 10_000, 24_000
 _PICTURE_TOKENS = 2_500
 _BYTES_A_TOKEN = 3
 
@@ -21,8 +21,8 @@ class OllamaReader(ReplyReader):
 
     shape_fix = "Check that the base URL is that of Ollama, such as http://localhost:11434."
 
-    def __init__(self, host: str, key: str) -> None:
-        super().__init__(host, key)
+    def __init__(self, host: str, key: str, plain: bool = False) -> None:
+        super().__init__(host, key, plain)
         self._begin = 0
         """Where in the body the line begins that is not whole yet."""
 
@@ -104,6 +104,8 @@ class OllamaClient(HttpClient):
             "stream": habits.stream,
             "options": {"num_ctx": context_length(prompt)},
         }
+        if prompt.plain:
+            return body
         if habits.structure == "schema":
             body["format"] = dict(prompt.schema)
         elif habits.structure == "object":
@@ -117,5 +119,6 @@ def context_length(prompt: Prompt) -> int:
     A change of it makes Ollama load the model anew, hence the steps and the large least.
     """
     text = len(with_schema(prompt).encode()) // _BYTES_A_TOKEN
-    needed = text + _PICTURE_TOKENS * len(prompt.images) + _ANSWER_TOKENS
+    answer = _PLAIN_ANSWER_TOKENS if prompt.plain else _ANSWER_TOKENS
+    needed = text + _PICTURE_TOKENS * len(prompt.images) + answer
     return max(_LEAST_CONTEXT, -(-needed // 4096) * 4096)

@@ -43,7 +43,9 @@ class OpenAIStyleClient(HttpClient):
         ]
         content.append({"type": "text", "text": rest})
         body: dict[str, Any] = {"model": self.model, "messages": [{"role": "user", "content": content}]}
-        if habits.structure == "schema":
+        if prompt.plain:
+            pass
+        elif habits.structure == "schema":
             schema = {"name": prompt.schema_name[:64], "strict": True, "schema": dict(prompt.schema)}
             body["response_format"] = {"type": "json_schema", "json_schema": schema}
         elif habits.structure == "object":
@@ -55,7 +57,7 @@ class OpenAIStyleClient(HttpClient):
         if self._is_openrouter:
             # What the answer cost; and no backend that would ignore the schema.
             body["usage"] = {"include": True}
-            if habits.structure == "schema":
+            if habits.structure == "schema" and not prompt.plain:
                 body["provider"] = {"require_parameters": True}
         return body
 

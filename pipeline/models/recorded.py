@@ -3,7 +3,8 @@
 
 The folder holds `replies.json`: one entry a stage and request key, sorted, with the answer as JSON (so that it can be
 read and edited), the hashes of the prompt that it answered, a small mark of each picture, the model and the time.
-A prompt that has changed since is still answered, and the drift is reported in the reply's notes.
+A prompt that has changed since is still answered, and the drift is reported in the reply's notes. An answer that is a plain
+text is played in pieces, as a model would write it, where its entry says how fast (`characters_a_second`).
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import json
 import os
 import tempfile
 import threading
+import time
 from collections.abc import Callable, Mapping
 from datetime import UTC, datetime
 from pathlib import Path
@@ -23,11 +25,13 @@ from PIL import Image
 
 from ..errors import Cancelled, ModelError, NotRecordedError, OutputError, ReplyError
 from .base import ModelClient, Prompt, Reply, name_of
+from .hearing import PAUSE, Hearing
 from .readable_json import readable_json
 from .tolerant import read_json
 
 FILE_NAME = "replies.json"
 FORMAT = "code-as-room/replies/1"
+DRAFT = "s00_draft/"
 _MARK_SIDE = 8
 _MARK_MEAN, _MARK_MOST = 3.0, 20
 """How far two picture marks may differ, in grey levels, and still be the same picture encoded or rendered elsewhere."""
@@ -48,6 +52,11 @@ class RecordedClient:
         digest = hashlib.sha256(json.dumps(self._replies, sort_keys=True).encode()).hexdigest()
         self.name = f"recorded:{digest[:8]}"
         self.describes = f"Recorded answers from {self.folder.name!r} (made by {', '.join(models) or 'unknown'})"
+
+    @property
+    def has_draft(self) -> bool:
+        """Whether a room written in one answer is among the answers."""
+        return any(key.startswith(DRAFT) for key in self._replies)
 
     def answer(self, prompt: Prompt, cancel: threading.Event, progress: Callable[[str], None] | None = None) -> Reply:
         """Play back the answer kept under the prompt's stage and key.
@@ -70,8 +79,10 @@ class RecordedClient:
             raise ReplyError(
                 f"The recorded answer for {key!r} does not fit what is asked now.", "Record it again with a model."
             )
+        text = _text(entry)
+        _play(text, entry, prompt, cancel)
         return Reply(
-            text=_text(entry),
+            text=text,
             model=str(entry.get("model", "recorded")),
             prompt_tokens=_count(entry.get("prompt_tokens")),
             completion_tokens=_count(entry.get("completion_tokens")),
@@ -179,10 +190,22 @@ def _entry(prompt: Prompt, reply: Reply) -> dict[str, Any]:
         "completion_tokens": reply.completion_tokens,
     }
     try:
-        entry["reply"] = read_json(reply.text)
+        entry["text" if prompt.plain else "reply"] = reply.text if prompt.plain else read_json(reply.text)
     except ReplyError:
         entry["text"] = reply.text
     return entry
+
+
+def _play(text: str, entry: Mapping[str, Any], prompt: Prompt, cancel: threading.Event) -> None:
+    """Let the answer be heard, in pieces where the recording says so. Raises Cancelled."""
+    hearing, pace = Hearing(prompt), entry.get("characters_a_second")
+    if prompt.hear is not None and isinstance(pace, (int, float)) and pace > 0:
+        began = time.monotonic()
+        while (end := int(pace * (time.monotonic() - began))) < len(text):
+            if cancel.wait(PAUSE / 2):
+                raise Cancelled
+            hearing.so_far(lambda end=end: text[:end])  # type: ignore[misc]
+    hearing.whole(text)
 
 
 def _text(entry: Mapping[str, Any]) -> str:

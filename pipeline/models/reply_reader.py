@@ -16,6 +16,7 @@ from .error_bodies import body_fault
 from .faults import Fault, ServiceError, plain, without_key
 from .sse import EventReader
 
+CUT_NOTE = "The model's length limit cut the answer; what came before is used."
 Ending = Literal["", "stop", "cut", "filter", "refused"]
 _EVENT_STARTS = (b"data:", b":", b"event:", b"id:", b"retry:")
 
@@ -25,14 +26,15 @@ class ReplyReader:
 
     Args:
         host: for messages; key: to be kept out of them, and out of the answer.
+        plain: the answer is a plain text, of which the beginning is of use too.
     """
 
     kind = "chat"
     """What kind of reply this is, for messages."""
     shape_fix = "Check that the base URL is that of an OpenAI-style service."
 
-    def __init__(self, host: str, key: str) -> None:
-        self._host, self._key = host, key
+    def __init__(self, host: str, key: str, plain: bool = False) -> None:
+        self._host, self._key, self._plain = host, key, plain
         self._events = EventReader()
         self._head = b""
         self._streamed: bool | None = None
@@ -52,6 +54,10 @@ class ReplyReader:
     def take(self, data: dict[str, Any]) -> bool:
         """One chunk of a stream, or a whole reply; False when it is nothing this service sends."""
         raise NotImplementedError
+
+    def so_far(self) -> str:
+        """The answer as far as it has arrived; may be called from another thread."""
+        return without_key("".join(self.text), self._key)
 
     def feed(self, piece: bytes) -> bool:
         """Take a piece of the body; True when the reply is complete and the rest need not be waited for."""
@@ -160,7 +166,8 @@ class ReplyReader:
                     "The service's content filter stopped the answer.", "Try another model or picture.", "refusal"
                 )
             )
-        if self.ending == "cut":
+        cut = self.ending == "cut"
+        if cut and not (self._plain and text.strip()):
             raise CutReplyError(
                 f"The model's answer was cut by its length limit after {len(text)} characters.",
                 "Choose a model with a longer answer, or raise the limit where the model is served.",
@@ -177,6 +184,7 @@ class ReplyReader:
             cost=self.cost,
             cached_tokens=self.cached_tokens,
             written_tokens=self.written_tokens,
+            notes=(CUT_NOTE,) if cut else (),
         )
 
 

@@ -35,6 +35,7 @@ folder, picture, replies = (Path(argument) for argument in sys.argv[1:4])
 found: dict[str, Any] = {}
 mode = ["good"]
 asked: list[dict[str, Any]] = []
+met: list[str] = []
 
 
 class Service(BaseHTTPRequestHandler):
@@ -45,6 +46,7 @@ class Service(BaseHTTPRequestHandler):
 
     def send(self, status: int, payload: Any) -> None:
         """Answer, with the key in a header too."""
+        met.append(self.command)
         data = json.dumps(payload).encode()
         self.send_response(status, f"said {KEY}")
         self.send_header("Content-Type", "application/json")
@@ -110,6 +112,22 @@ def attempt(name: str, call: Any) -> None:
         found[name] = f"{type(error).__name__}: {error}"
 
 
+def without_a_run(preferences: Any, base: str) -> None:
+    """Everything that happens by itself, or that is no request: a service is chosen, and nobody asks it anything."""
+    ops, scene = bpy.ops.code_as_room, bpy.context.scene
+    preferences.provider = "CUSTOM"
+    preferences.base_url, preferences.model, preferences.api_key = base, "served", KEY
+    preferences.model_seeing, preferences.model_seeing = "eyes", ""
+    ops.load_picture(filepath=str(picture))
+    part("operators.clients").run_estimate(["s01_analysis"], 5)
+    attempt("looked at", lambda: [row.status for row in part("operators.view_state").peek(scene).stages])
+    bpy.ops.wm.save_as_mainfile(filepath=str(folder / "quiet.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(folder / "quiet.blend"))
+    importlib.import_module("addon_utils").disable(MODULE, default_set=True)
+    importlib.import_module("addon_utils").enable(MODULE, default_set=True)
+    found["requests without a run"] = list(met)
+
+
 def connection(preferences: Any, base: str) -> None:
     """Testing the connection and fetching models."""
     ops = bpy.ops.code_as_room
@@ -169,6 +187,7 @@ def room(preferences: Any) -> None:
     part("operators.outputs").LONG_SIDE = 96
     ops.load_picture(filepath=str(picture))
     scene.code_as_room.iterations = 1
+    scene.code_as_room.way = "STAGES"
     for mode[0] in ("key", "money", "junk"):
         attempt(f"run {mode[0]}", lambda: ops.run_stage(stage="s01_analysis"))
     mode[0] = "good"
@@ -202,6 +221,10 @@ def main() -> None:
     addon_utils.enable(MODULE, default_set=True)
     preferences = bpy.context.preferences.addons[MODULE].preferences
     found["default"] = preferences.provider
+    without_a_run(preferences, f"http://127.0.0.1:{server.server_address[1]}/v1")
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    addon_utils.enable(MODULE, default_set=True)
+    preferences = bpy.context.preferences.addons[MODULE].preferences
     connection(preferences, f"http://127.0.0.1:{server.server_address[1]}/v1")
     stopping(preferences)
     switching(preferences)

@@ -107,7 +107,7 @@ def test_a_stage_is_done_with_what_was_pasted_and_every_answer_goes_the_usual_wa
             assert paste(f"Here you are:\n```json\n{answer}\n```\nAnything else?") == {"FINISHED"}
             tick_until(lambda p=prompt: not by_hand.waiting() or by_hand.waiting()[0].prompt is not p)
     state = view_state.peek(bpy.context.scene)
-    assert state is not None and state.stages[0].status == "done"
+    assert state is not None and state.stage("s01_analysis").status == "done"
     assert not list((tmp_path / "pictures").rglob("*.*")) and by_hand.waiting() == ()
     text = bpy.data.texts.get(talk_ops.NAME)
     assert text is None and ours.show_prompts() == {"FINISHED"}

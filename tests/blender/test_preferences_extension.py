@@ -89,6 +89,10 @@ def test_the_key_went_to_the_service_that_it_was_typed_for(found: dict[str, Any]
     assert found["models"] == ["served"]
 
 
+def test_nothing_is_asked_that_the_artist_did_not_ask_for(found: dict[str, Any]) -> None:
+    assert found["looked at"].startswith("['not run'") and found["requests without a run"] == []
+
+
 def test_nothing_is_asked_while_blender_is_offline(found: dict[str, Any]) -> None:
     assert found["poll while offline"] is False and "online access is off" in found["test while offline"]
     assert found["asked while offline"] == 0

@@ -7,18 +7,27 @@
 from __future__ import annotations
 
 import json
+import math
+import os
 import random
+import time
 
 import pytest
 from code_as_room.pipeline.artifacts.replies import AnalysisReply, CritiqueReply, SecondLookReply
 from code_as_room.pipeline.errors import ReplyError
 from code_as_room.pipeline.models.validate import validate_reply
+from code_as_room.pipeline.stages import s02_graph, s03_layout
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from benchmark.fuzz import KINDS, Seed, StageFuzz, mutated, read, seeds
+from benchmark.fuzz import Place, reply_of, table, through
+from benchmark.fuzz_replies import KINDS, Seed, mutated, read, seeds
+from benchmark.fuzz_rooms import rooms, waiting_seeds
+from benchmark.fuzz_stages import StageFuzz
+from benchmark.fuzz_waiting import Waiting
 
 SEEDS = seeds()
+FORKS = pytest.mark.skipif(not hasattr(os, "fork"), reason="this system copies no processes")
 SMALL = [seed for seed in SEEDS if len(json.dumps(seed.data)) < 3500]
 
 
@@ -59,3 +68,49 @@ def test_a_stage_reads_damaged_answers() -> None:
     stage = fuzz.stages[-1]
     ends = [fuzz.once(stage, seed) for seed in range(25)]
     assert "done" in ends and set(ends) <= {"done", "refused"}
+
+
+def numbers_of(place: Place, count: int) -> list[int]:
+    """The first numbers whose replies answer this question."""
+    return [number for number in range(60 * count) if reply_of(number, 1)[0] == place][:count]
+
+
+def test_every_question_of_a_stage_is_waited_at() -> None:
+    asked = {key.partition("/")[0] for _, key in waiting_seeds()}
+    assert asked == {*KINDS, "01_again"}
+
+
+@FORKS
+@pytest.mark.parametrize("key", ["01_again", "02_graph", "03_critique/0", "04_auxiliary"])
+def test_what_was_read_goes_through_the_stage_that_asked(key: str) -> None:
+    place = ("bedroom", key)
+    row = through(place, numbers_of(place, 25), 1, time.monotonic() + 600)
+    assert not row.wrong, row.wrong
+    assert row.mutated == 25 == row.read + row.refused
+    assert row.done + row.stopped == row.read - row.twice > 2
+    assert row.done > 0
+
+
+@FORKS
+def test_the_fuzzer_finds_what_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
+    place = ("bedroom", "02_graph")
+    numbers = numbers_of(place, 12)
+
+    def broken(*_: object) -> None:
+        raise ZeroDivisionError
+
+    with monkeypatch.context() as patched:
+        # Not before the good answer has gone through, so that it is the damaged ones that meet it.
+        make, calls = s02_graph.make_graph, iter(range(1000))
+        patched.setattr(s02_graph, "make_graph", lambda *a: make(*a) if next(calls) == 0 else broken())
+        row = through(place, numbers, 1, time.monotonic() + 600)
+    assert row.wrong and not row.done and "ZeroDivisionError" in row.wrong[0]
+    assert str(len(row.wrong)) in table([row])
+
+
+def test_the_fuzzer_finds_a_number_that_is_not_finite(monkeypatch: pytest.MonkeyPatch) -> None:
+    waiting, good = Waiting(rooms()["bedroom"], "03_critique/0"), waiting_seeds()["bedroom", "03_critique/0"]
+    score = s03_layout.with_model
+    monkeypatch.setattr(s03_layout, "with_model", lambda *a: score(*a).model_copy(update={"boxes": math.nan}))
+    with pytest.raises(AssertionError, match="not finite in LayoutProgram"):
+        waiting.go_on(good.kind.model_validate(good.data))

@@ -47,21 +47,29 @@ def test_no_more_are_under_way_than_allowed(peer, wire, a_prompt):
 
 
 def test_being_asked_too_often_halves_it_once_for_all_that_were_under_way(peer, wire, a_prompt):
-    together = threading.Barrier(4)
+    together, all_told, allowed = threading.Barrier(4), threading.Event(), []
 
     def script(received):
         if received.number < 4:
             together.wait(5)
             received.reply(429, {"error": {"message": "slow down"}})
         else:
+            # An answer makes it more again, so none comes before the last of the four has heard.
+            all_told.wait(5)
             wire.stream(received, '{"a": 1}')
 
     peer.script = script
     pace = Pace(4)
     client = OpenAIStyleClient(peer.url, "m", retries=QUICK, pace=pace)
-    allowed = []
     told = pace.too_often
-    pace.too_often = lambda *args: (told(*args), allowed.append(pace.allowed))
+
+    def note(*args):
+        told(*args)
+        allowed.append(pace.allowed)
+        if len(allowed) == 4:
+            all_told.set()
+
+    pace.too_often = note
     assert all(f.result() for f in side_by_side(client, a_prompt, 4))
     assert allowed == [2, 2, 2, 2] and len(peer.received) == 8
 

@@ -2,14 +2,16 @@
 """A model for each group of stages, and answers that stay kept under the name of who gave them."""
 
 import threading
+from dataclasses import replace
 
 import pytest
 from code_as_room.pipeline.errors import ModelError
 from code_as_room.pipeline.models.base import Prompt, Reply, name_of
+from code_as_room.pipeline.models.prices import PriceList
 from code_as_room.pipeline.models.recorded import Recorder
 from code_as_room.pipeline.models.registry import ClientSettings, make_client, settings_from_environment
 from code_as_room.pipeline.models.routing import RoutingClient, group_of
-from code_as_room.pipeline.spending import metered
+from code_as_room.pipeline.spending import metered, price_lookup
 
 
 class Client:
@@ -104,8 +106,36 @@ def test_a_provider_or_cap_that_cannot_be_is_refused(environment):
 
 
 @pytest.mark.parametrize(
-    "name, kind", [("lmstudio", "openai"), ("gemini", "gemini"), ("ollama", "ollama"), ("vllm", "openai")]
+    "name, kind, address",
+    [
+        ("openai", "openai", "https://api.openai.com/v1"),
+        ("openrouter", "openai", "https://openrouter.ai/api/v1"),
+        ("lmstudio", "openai", "http://localhost:1234/v1"),
+        ("llama.cpp", "openai", "http://localhost:8080/v1"),
+        ("vllm", "openai", "http://localhost:8000/v1"),
+        ("anthropic", "anthropic", "https://api.anthropic.com/v1"),
+        ("gemini", "gemini", "https://generativelanguage.googleapis.com/v1beta"),
+        ("ollama", "ollama", "http://localhost:11434"),
+    ],
 )
-def test_every_provider_has_an_address_of_its_own(name, kind):
-    settings = settings_from_environment({"CODE_AS_ROOM_PROVIDER": name, "CODE_AS_ROOM_MODEL": "m"})
+def test_every_provider_has_an_address_of_its_own_and_takes_another(name, kind, address):
+    given = {"CODE_AS_ROOM_PROVIDER": name, "CODE_AS_ROOM_MODEL": "m"}
+    settings = settings_from_environment(given)
     assert settings.kind == kind and make_client(settings).name == f"{kind}:m"
+    assert settings.base_url == address == make_client(settings).base_url
+    elsewhere = settings_from_environment({**given, "CODE_AS_ROOM_BASE_URL": "http://other.example:9/v1"})
+    assert make_client(elsewhere).host == "other.example"
+
+
+def test_a_model_without_eyes_answers_what_has_no_pictures_and_is_priced_for_it():
+    settings = ClientSettings(kind="openai", base_url="http://localhost:1/v1", model="eyes", models={"text": "blind"})
+    client = make_client(settings)
+    words = Prompt("s06_geometry", "k", "t", (), "n", {}, "h")
+    asked = []
+    client.main.answer = lambda prompt, *rest: asked.append("eyes") or Reply("{}", "eyes")
+    client._groups["text"].answer = lambda prompt, *rest: asked.append("blind") or Reply("{}", "blind")
+    client.answer(words, threading.Event())
+    client.answer(replace(words, images=(b"\x89PNG",)), threading.Event())
+    assert asked == ["blind", "eyes"]
+    look = price_lookup(PriceList(), settings)
+    assert (look(words.stage, 0)[0], look(words.stage, 1)[0]) == ("blind", "eyes")

@@ -36,6 +36,8 @@ class BuiltinClient:
         if cancel.is_set():
             raise Cancelled
         start = time.monotonic()
+        if prompt.plain:
+            raise ModelError("The built-in analysis writes no drafts.", "Choose a model, or go stage by stage.")
         if not prompt.key.startswith(ANALYSIS):
             text = json.dumps(empty_value(prompt.schema))
             return Reply(text, self.name, seconds=time.monotonic() - start)
