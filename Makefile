@@ -43,7 +43,7 @@ benchmark: setup
 	$(RUN)/python -m benchmark.room_size out/benchmark
 	-$(RUN)/python -m benchmark.finishing
 	-$(RUN)/python -m benchmark.client_speed
-	-$(RUN)/python -m benchmark.fuzz --replies 100000 --runs 5
+	-$(RUN)/python -m benchmark.fuzz --replies 100000 --minutes 25 --processes $(JOBS)
 
 # Stages 1 to 4 replayed from the recordings of our own pictures, scored beside the direct answer.
 layout-table: setup

@@ -50,6 +50,12 @@ def parser(program: str) -> argparse.ArgumentParser:
         metavar="PIXELS",
         help="render the room's views too (render_reference.png, render_top.png, ...), with Cycles, this long a side (768)",
     )
+    result.add_argument(
+        "--draft", action="store_true", help="ask the model for the whole room in one answer; the stages read that"
+    )
+    result.add_argument(
+        "--refine", action="store_true", help="with --draft: then ask for what the measured findings call for"
+    )
     result.add_argument("--glb", action="store_true", help="write room.glb too: the room as glTF, for other programs")
     result.add_argument("--usd", action="store_true", help="write room.usdz too: the room as USD, for other programs")
     result.add_argument("--resume", action="store_true", help="go on from DIR/memory.json; finished stages are kept")
@@ -115,16 +121,26 @@ def _one_line(text: str) -> str:
 
 
 def _perform(options: argparse.Namespace) -> int:
+    from ..pipeline.draft.client import DraftedClient
     from ..pipeline.picture import load_picture
     from ..pipeline.spending import begin_total
+    from ..pipeline.stages import all_stages, s00_draft
     from .keeping import MemoryFile
 
     picture = load_picture(options.picture)
-    client = _client(options)
+    real = client = _client(options)
+    if (options.draft or options.refine) and real.name == "builtin":
+        raise RoomError(
+            "A draft needs a model that sees.", "Name one with --base-url and --model, or leave --draft out."
+        )
     folder = prepare_folder(options.out)
     kept = MemoryFile(folder, options.resume)
     memory = kept.load()
     begin_total(client, memory.cost()[2])
+    stages = all_stages()
+    if options.draft or options.refine:
+        client = DraftedClient(real, memory)
+        stages = (s00_draft.STAGE, *stages)
     memory.settings = _settings(options, memory.settings)
     for note in picture.notes:
         print(f"Note: {note}")
@@ -139,7 +155,6 @@ def _perform(options: argparse.Namespace) -> int:
     from ..pipeline.run import Run
     from ..pipeline.run_images import bring_images
     from ..pipeline.scene.backend import BlenderScene
-    from ..pipeline.stages import all_stages
     from ..pipeline.textures.kept import KeptImages
     from . import own_file
 
@@ -158,8 +173,11 @@ def _perform(options: argparse.Namespace) -> int:
         print(f"Images: {painter.describes}")
     bring_images(memory, run.backend, folder)
     try:
-        for stage in all_stages():
+        for stage in stages:
             run.run_all([stage])
+            kept.keep(memory)
+        if client is not real:
+            _judge(run, real, options.refine)
             kept.keep(memory)
         with own_file.scene_settings():
             own_file.keep_start(bpy.context.scene, picture, memory.settings)
@@ -195,6 +213,18 @@ def _finish(run: Run, folder: Path) -> None:
     print(f"Results in {folder}:")
     for path in paths:
         print(f"  {path.relative_to(folder).as_posix()}")
+
+
+def _judge(run: Run, real: ModelClient, refined: bool) -> None:
+    """Say how good the draft is, and refine it where that is wanted."""
+    from ..pipeline.draft.verdict import judge
+    from ..pipeline.run_refining import refine
+
+    verdict = judge(run.memory)
+    if verdict is not None:
+        print(verdict.sentence)
+    if refined:
+        refine(run, real, lambda words: print(f"  {words}", flush=True))
 
 
 def _export(scene: object, folder: Path, options: argparse.Namespace) -> None:

@@ -13,7 +13,7 @@ from ..pipeline.run_assets import take_off
 from ..pipeline.run_modelling import GEOMETRY, forget_own, function_line, show_as_boxes
 from ..pipeline.stages import all_stages
 from ..pipeline.stages.base import Stage
-from . import driver, object_list, own_room, room_memory, rooms, view_state
+from . import driver, object_list, own_room, room_memory, rooms, view_state, ways
 from .base import RoomOperator, allow, busy_blocker
 from .program_ops import show_line
 from .result_ops import show_text
@@ -95,14 +95,16 @@ class CODE_AS_ROOM_OT_detail_again(StageOperator):
         forget_own(run.memory, names)
         take_off(run, names, refused=False)
         room_memory.keep(run)
-        driver.start(scene, _stages_from_geometry(scene), again=True, fresh=True, only=names, step=self.bl_label)
+        stages = _stages_from_geometry(scene)
+        derived = ways.derived(scene, stages, [GEOMETRY])
+        driver.start(scene, stages, again=True, fresh=True, only=names, step=self.bl_label, derived=derived)
 
 
 def _stages_from_geometry(scene: Any) -> list[Stage]:
     """The geometry stage, and those after it that are done: what they added would be gone otherwise."""
     state, stages = view_state.peek(scene), all_stages()
     place = next(n for n, stage in enumerate(stages) if stage.id == GEOMETRY)
-    done = {row.id for row in state.stages if row.status == "done"} if state is not None else set()
+    done = {row.id for row in state.stages if row.is_done} if state is not None else set()
     return [stages[place], *(s for s in stages[place + 1 :] if s.id in done)]
 
 

@@ -16,16 +16,31 @@ from typing import Any
 import bpy
 
 from ..pipeline.ask_replaced import replaced_answers
+from ..pipeline.draft.refine import Step
 from ..pipeline.errors import Cancelled, RoomError
 from ..pipeline.run import Run, StageReport
 from ..pipeline.run_corrections import bring_up_to_date
+from ..pipeline.stages import all_stages
 from ..pipeline.stages.base import Stage
-from . import asset_shelf, clients, journals, late, own_room, painters, properties, reference, room_memory, view_state
+from . import (
+    asset_shelf,
+    clients,
+    journals,
+    late,
+    own_room,
+    painters,
+    properties,
+    reference,
+    room_memory,
+    view_state,
+    ways,
+)
 from .desk import DESK
 from .job import Job
 from .meanwhile import NotApplied, in_hand
 from .progress import Durations, Progress
 from .scene_backend import ResolvedScene, scene_by_uid
+from .todo import Todo, refining
 
 log = logging.getLogger(__name__)
 BUDGET = 0.03
@@ -113,6 +128,8 @@ def start(
     fresh: bool = False,
     only: frozenset[str] | None = None,
     step: str = "",
+    derived: frozenset[str] = frozenset(),
+    redo: frozenset[str] = frozenset(),
 ) -> Job:
     """Begin a job; `run_blocking` or the window's timer takes it to its end.
 
@@ -121,30 +138,50 @@ def start(
         fresh: ask again even where memory holds an answer.
         only: ids of the objects that are to be done anew, None for all.
         step: name of the one undo step of all stages together, "" for one a stage.
+        derived: ids of the stages that are answered from the draft.
+        redo: ids of the stages that are run even where they are done.
 
     Raises:
         RoomError: another job is on its way, or as `make_run`.
     """
-    global _job
     if _job is not None:
         raise RoomError("Another run is going on.", "Wait for it, or stop it.")
     run, backend = make_run(scene)
+    drafted = ways.deriving(run) if derived else run.client
+    todo = [Todo(s, drafted if s.id in derived else run.client, again or s.id in redo, fresh, only) for s in stages]
+    return _begin(scene, run, backend, todo, step)
+
+
+def start_refining(scene: Any, steps: Sequence[Step], name: str) -> Job:
+    """Begin a job that asks for what these steps say; all that follows is answered from the draft. One undo step.
+
+    Raises:
+        RoomError: as `start`.
+    """
+    if _job is not None:
+        raise RoomError("Another run is going on.", "Wait for it, or stop it.")
+    run, backend = make_run(scene)
+    return _begin(scene, run, backend, refining(steps, all_stages(), run.client, ways.deriving(run)), name)
+
+
+def _begin(scene: Any, run: Run, backend: ResolvedScene, todo: list[Todo], step: str) -> Job:
+    global _job
     bring_up_to_date(run)  # a known size may have been changed while another run was going on
     uid = scene.session_uid
 
     def stage_done(title: str) -> None:
         view_state.forget_failure(uid, job.progress.stage)
         _follow_camera(uid)
-        if not step or job.stages_done == len(stages):
+        if not step or job.is_last:
             _push_undo(f"Room: {step or title}")
         else:
             job.wrote = True  # else undoing what the artist does next would take it along, were the job stopped now
         _refresh(uid)
 
-    for stage in stages:
-        view_state.forget_failure(uid, stage.id)
+    for item in todo:
+        view_state.forget_failure(uid, item.stage.id)
     durations = Durations(clients.user_folder())
-    job = _job = Job(run, backend, stages, again, fresh, stage_done, only, durations)
+    job = _job = Job(run, backend, todo, stage_done, durations)
     _outcomes.pop(uid, None)
     return job
 
@@ -226,6 +263,10 @@ def _finish(job: Job) -> Outcome:
     done = f"{job.stages_done} stage{'' if job.stages_done == 1 else 's'} in {seconds:.1f} s"
     if job.error is None:
         outcome = Outcome(f"Done: {done}" if job.stages_done else "Nothing to do: every stage is done")
+    elif job.error is job.cut:
+        stopped = isinstance(job.cut, Cancelled)
+        text = "Stopped. What stands is kept as the draft" if stopped else "The draft broke off. What stands is kept"
+        outcome = Outcome(text, None if stopped else view_state.Problem.of(job.error))
     elif isinstance(job.error, Cancelled):
         outcome = Outcome("Stopped. What was answered is kept")
     elif isinstance(job.error, NotApplied):

@@ -11,6 +11,8 @@ Rules:
   answers, told, and never applied. What the artist does meanwhile is kept too (`meanwhile.py`).
 - A job that was dropped (another file was loaded) never touches Blender again, whatever its worker still answers. One
   that was stopped is over within a second; what its worker still answers is taken by `late_answers`.
+- A stage with `growth` builds while it is answered (`growing.py`). Stopped, or left by its service, it ends with what was
+  heard until then, and the job after it.
 """
 
 from __future__ import annotations
@@ -22,18 +24,20 @@ from typing import Any
 
 from ..pipeline.artifacts.layout import LayoutEdit
 from ..pipeline.ask import AskEvent
-from ..pipeline.errors import Cancelled, RoomError
+from ..pipeline.errors import Cancelled, ModelError, RoomError
 from ..pipeline.memory import dump_memory
 from ..pipeline.models.base import name_of
 from ..pipeline.run import Run, StageSession
 from ..pipeline.scene.plan import plan_build, warm_up
-from ..pipeline.stages.base import Stage
 from ..pipeline.stages.wishes import Ask, Build, FindAssets, Paint, Render, Tell
 from . import clients
 from .building import Building
+from .growing import PATIENCE as GROWN
+from .growing import Growing
 from .meanwhile import Meanwhile, in_hand, outdated
 from .progress import Durations, Progress
 from .scene_backend import ResolvedScene
+from .todo import Todo, apply_best
 from .worker import Failed, Planned, Ready, Result, Worker
 
 __all__ = ["Job", "Progress"]
@@ -48,41 +52,39 @@ class Job:
 
     Args:
         run: its backend is a `ResolvedScene`.
-        stages: in their order; those that are done when their turn comes are left out, unless `again`.
-        again: run the stages even where they are done.
-        fresh: ask again even where memory holds an answer.
+        todo: stages in their order; those that are done when their turn comes are left out, unless `again`.
         on_stage_done: called on the main thread after each stage, with its title.
-        only: ids of the objects that are to be done anew, None for all.
 
     Attributes:
         phase: what the job is waiting for or doing, in a few words.
         wrote: whether something was written into the file since the last stage was done.
         must_put_back: whether the room that stood before still has to be put back.
+        cut: why a stage that grows was ended early with what was heard, None when none was.
     """
 
     def __init__(
         self,
         run: Run,
         backend: ResolvedScene,
-        stages: Sequence[Stage],
-        again: bool = False,
-        fresh: bool = False,
+        todo: Sequence[Todo],
         on_stage_done: Callable[[str], None] = lambda title: None,
-        only: frozenset[str] | None = None,
         durations: Durations | None = None,
     ) -> None:
         self.run, self.backend, self.scene_uid = run, backend, backend.uid
-        self._todo, self._again, self._fresh, self._only = list(stages), again, fresh, only
+        self._todo, self._present = list(todo), todo[0] if todo else None
         self._on_stage_done = on_stage_done
         self._durations = durations or Durations(None)
         self._worker = Worker()
         self._session: StageSession | None = None
         self._building: tuple[Building, Planned] | None = None
         self._ending: tuple[BaseException, Building] | None = None
+        self._restoring: Building | None = None
         self._meanwhile = Meanwhile(run, backend)
         self._built = ""
         self._applied = False
         self._stopped_at = float("inf")
+        self._growing: Growing | None = None
+        self.cut: BaseException | None = None
         self.over = self.must_put_back = False
         self.error: BaseException | None = None
         self.stages_done = 0
@@ -106,6 +108,8 @@ class Job:
         """End the job at once without touching Blender any more, as when another file is loaded."""
         self.over = True
         self.run.cancel.set()
+        if self._growing is not None:
+            self._growing.leave()
 
     def tick(self, budget: float) -> bool:
         """Do what is waiting for the main thread, for at most about `budget` seconds; True while the job goes on."""
@@ -116,13 +120,16 @@ class Job:
             if self._ending is not None:
                 self._go_on_ending(deadline)
                 return not self.over
-            if self._worker.busy and time.monotonic() > self._stopped_at + PATIENCE:
+            if self._worker.busy and self._is_left():
                 self._end(Cancelled())
             while not self.over and self._ending is None:
+                if self._restoring is not None:
+                    self._go_on_restoring(deadline)
+                    break
                 if self._building is not None:
                     if not self._go_on_building(deadline):
                         break
-                elif not self._take_message():
+                elif not self._take_message() and not self._grow(deadline):
                     break
                 if time.monotonic() >= deadline:
                     break
@@ -142,7 +149,8 @@ class Job:
 
     def wait(self, seconds: float) -> None:
         """Block until the worker has something, at most this long (for runs without a window)."""
-        if self._building is None and self._ending is None:
+        news = self._growing is not None and self._growing.has_news
+        if self._building is None and self._ending is None and not news:
             self._worker.wait(seconds)
 
     @property
@@ -198,13 +206,13 @@ class Job:
             try:
                 session = self._session = move()
                 while isinstance(session.wish, Ask | FindAssets | Paint):
-                    if self.run.cancel.is_set():
+                    if self._is_stopped and self._growing is None:
                         raise Cancelled
                     if isinstance(session.wish, FindAssets):  # reads files, which may take a while
                         session.send(session.act(session.wish))
                         continue
                     self.phase = "waiting for the model"
-                    replies = session.answer(session.wish, self._worker.tell)
+                    replies = self._answered(session)
                     self.phase = "computing"
                     self.backend.save_memory(dump_memory(self.run.memory))
                     session.send(replies)
@@ -217,11 +225,35 @@ class Job:
         self.phase = "computing"
         self._worker.hand_over(work)
 
+    def _answered(self, session: StageSession) -> Any:
+        """What is answered to the session's wish; in a stage that grows, what was heard when no more comes."""
+        wish, make = session.wish, session.stage.growth
+        assert isinstance(wish, Ask | Paint)
+        if make is None:
+            return session.answer(wish, self._worker.tell)
+        if self._growing is None:
+            self._growing = Growing(make(self.run.view(session.stage)), self.backend, self._meanwhile)
+        try:
+            if self.cut is not None or self.run.cancel.is_set():
+                raise self.cut or Cancelled()
+            return session.answer(wish, self._growing.listening(self._worker.tell))
+        except (Cancelled, ModelError) as error:
+            replies = self._growing.instead(wish, error)
+            self.cut = session.cut = error
+            return replies
+
     def _plan(self, session: StageSession, edits: list[LayoutEdit]) -> Planned:
         """Work the session's build out, with what the artist edited."""
         assert isinstance(session.wish, Build)
         text, findings = self._meanwhile.patched(session.wish.text, edits)
         return Planned(plan_build(text), edits, findings)
+
+    def _plan_again(self, edits: list[LayoutEdit]) -> None:
+        """Let the worker work the present build out once more: the artist edited something meanwhile."""
+        session = self._session
+        assert session is not None
+        self.phase = "computing"
+        self._worker.hand_over(lambda: self._plan(session, edits))
 
     # ---- the main thread's side ----
 
@@ -235,10 +267,13 @@ class Job:
             if message.kind in ("answered", "recalled"):
                 self.progress.count(self.run.memory)
             return True
-        if _touches(message) and not self.run.cancel.is_set() and self._must_wait():
+        if _touches(message) and not self._is_stopped and self._must_wait():
             self._worker.hold(message)
             return False
-        self._handle(message)
+        if self._growing is not None and _touches(message) and self._growing.end() and isinstance(message, Planned):
+            self._plan_again([])
+        else:
+            self._handle(message)
         return True
 
     def _handle(self, message: Result) -> None:
@@ -247,7 +282,9 @@ class Job:
         self._meanwhile.check_scene()
         if message == Ready("applied"):
             return self._stage_is_done()
-        if self.run.cancel.is_set():
+        if message == Ready("taken back"):
+            return self._take_back()
+        if self._is_stopped:
             return self._end(Cancelled())
         self._meanwhile.agree()
         if isinstance(message, Ready):
@@ -263,30 +300,37 @@ class Job:
 
     def _begin_next(self) -> None:
         """Start the next stage that has to run, or end."""
+        if self.cut is not None:
+            return self._end(self.cut)
+        self._growing = None
         self._session, self._applied = None, False
-        while self._todo and not self._again and self.run.status(self._todo[0]) == "done":
+        while self._todo and not self._todo[0].again and self.run.status(self._todo[0].stage) == "done":
             self._todo.pop(0)
             self.progress.number += 1
         if not self._todo:
             return self._end(None)
         self._meanwhile.check_inputs(None)
-        stage = self._todo.pop(0)
-        self._expect(stage)
+        self._present = present = self._todo.pop(0)
+        self.run.client, stage = present.client, present.stage
+        self._expect(present)
         self.run.take_over_edits()
         self._meanwhile.begin_stage()
         self._built = ""
-        # A stage that always does everything is not asked anew for the sake of a few objects.
-        chosen = self._only is None or stage.partial
-        fresh, only = self._fresh and chosen, self._only if chosen else None
+        fresh, only = present.scope
         self._go_on(lambda: StageSession(self.run, stage, fresh, only, waits=True))
 
-    def _expect(self, stage: Stage) -> None:
+    @property
+    def is_last(self) -> bool:
+        """Whether nothing is left to do after the present stage."""
+        return not any(item.again or self.run.status(item.stage) != "done" for item in self._todo)
+
+    def _expect(self, present: Todo) -> None:
         """Tell which stage begins, and how long it and those after it took before."""
-        progress, now = self.progress, time.monotonic()
+        progress, now, stage = self.progress, time.monotonic(), present.stage
         progress.number += 1
         progress.stage, progress.title, progress.stage_began = stage.id, stage.title, now
         progress.what, progress.step, progress.steps, progress.note = "Starting", 0, 0, ""
-        names = {s.id: name_of(self.run.client, s.id) for s in (stage, *self._todo)}
+        names = {item.stage.id: name_of(item.client, item.stage.id) for item in (present, *self._todo)}
         progress.stage_expected = self._durations.expected(self.run.memory, stage.id, names[stage.id])
         rest = self._durations.expected_all(self.run.memory, list(names), names)
         progress.expected = None if rest is None else now - progress.began + rest
@@ -298,11 +342,33 @@ class Job:
             self.progress.note = self.phase = note
         return bool(note)
 
+    def _grow(self, deadline: float) -> bool:
+        """Build what was heard of a stage that grows; False when there is nothing new."""
+        growing = self._growing
+        if growing is None or self._is_stopped or not growing.has_news:
+            return False
+        self._meanwhile.check_scene()
+        if not growing.go_on(deadline, self._must_wait()):
+            return False
+        self._built = growing.built
+        self._tell(growing.words, 0, 0)
+        return True
+
+    @property
+    def _is_stopped(self) -> bool:
+        """Whether the artist stopped the job, and no stage is being ended with what was heard."""
+        return self.run.cancel.is_set() and self.cut is None
+
+    def _is_left(self) -> bool:
+        """Whether the worker of a stopped job takes too long to notice."""
+        grows = self._growing is not None and self._growing.stands
+        return self._is_stopped and time.monotonic() > self._stopped_at + (GROWN if grows else PATIENCE)
+
     def _go_on_building(self, deadline: float) -> bool:
         """Do slices of the build until the deadline; False when it has to wait."""
         assert self._building is not None
         building, planned = self._building
-        if self.run.cancel.is_set():
+        if self._is_stopped:
             building.drop()
             self._building = None
             self._end(Cancelled())
@@ -318,8 +384,7 @@ class Job:
         edits = self.backend.read_back()
         if edits != planned.edits:
             building.drop()
-            self._worker.hand_over(lambda: self._plan(session, edits))
-            self.phase = "computing"
+            self._plan_again(edits)
             return False
         if edits:
             self._meanwhile.take_over(edits, planned.findings)
@@ -350,7 +415,12 @@ class Job:
         """The stage's result is still good: let the worker write it."""
 
         def write() -> Result:
-            session.apply()
+            if self._present is not None and self._present.keeps_best:
+                if not apply_best(self.run, session):
+                    self.backend.save_memory(dump_memory(self.run.memory))
+                    return Ready("taken back")
+            else:
+                session.apply()
             report = session.report()
             if report.calls:
                 self._durations.note(report.stage, name_of(self.run.client, report.stage), report.seconds)
@@ -366,6 +436,30 @@ class Job:
         self.progress.count(self.run.memory)
         self.stages_done += 1
         self._on_stage_done(self.progress.title)
+        self._worker.hand_over(lambda: Ready("begin"))
+
+    def _take_back(self) -> None:
+        """The present stage made nothing better: the room that stood before it stands again, and the job goes on."""
+        self.backend.notices.append(f"{self.progress.title}: no better than before, so it was taken back.")
+        self._applied = True
+        self._restoring = self._meanwhile.former_room()
+        if self._restoring is None:
+            self._worker.hand_over(lambda: Ready("begin"))
+
+    def _go_on_restoring(self, deadline: float) -> None:
+        """Prepare the former room in slices, then put it in place."""
+        former = self._restoring
+        assert former is not None
+        while former.step():
+            if time.monotonic() >= deadline:
+                return
+        if self._must_wait():
+            return
+        self._restoring = None
+        self._meanwhile.put_back(former)
+        former.drop()
+        self.backend.save_memory(dump_memory(self.run.memory))
+        self._flush()
         self._worker.hand_over(lambda: Ready("begin"))
 
     def _flush(self) -> bool:
@@ -393,6 +487,8 @@ class Job:
     def _former_room(self) -> Building | None:
         """What has to be built before this job is over, None when nothing has."""
         try:
+            if self._growing is not None:
+                self._growing.end()
             if self._building is not None:
                 self._building[0].drop()
                 self._building = None

@@ -64,6 +64,8 @@ class Progress:
 
     def take(self, event: AskEvent) -> None:
         """Note what happened to a question."""
+        if event.kind == "heard":
+            return
         self.note = event.text
         if event.kind == "asked":
             self._open.add(event.key)

@@ -10,7 +10,7 @@ import bpy
 
 from ..pipeline.errors import RoomError
 from ..pipeline.stages.s10_finish import CORRECTIONS_OFF
-from . import fault_kinds, object_list, view_state
+from . import fault_kinds, object_list, view_state, ways
 
 
 def _background_changed(settings: Any, context: Any) -> None:
@@ -61,6 +61,19 @@ def _begin_with_present(settings: Any, switch: str, value: str, axis: int) -> No
     state = view_state.peek(settings.id_data)
     if getattr(settings, switch) and not settings.is_property_set(value) and state is not None and state.room_size:
         setattr(settings, value, state.room_size[axis])
+
+
+def _get_way(settings: Any) -> int:
+    state = view_state.peek(settings.id_data)
+    return WAYS.index("DRAFT" if state is not None and state.way == "draft" else "STAGES")
+
+
+def _set_way(settings: Any, value: int) -> None:
+    ways.choose("draft" if WAYS[value] == "DRAFT" else "stages")
+    view_state.refresh_all()
+
+
+WAYS = ("DRAFT", "STAGES")
 
 
 class CodeAsRoomSettings(bpy.types.PropertyGroup):
@@ -133,6 +146,19 @@ class CodeAsRoomSettings(bpy.types.PropertyGroup):
         precision=3,
         update=_size_changed,
     )
+    way: bpy.props.EnumProperty(  # type: ignore[valid-type]
+        name="How",
+        description="How the room is made; remembered for each provider",
+        items=(
+            ("DRAFT", "Draft", "The model writes the whole room in one answer, which grows while it is written; "
+             "then refine what needs it. For strong models", 0),
+            ("STAGES", "Stages", "One step after the other, each with questions of its own: see and decide at every step. "
+             "For weaker models too", 1),
+        ),
+        get=_get_way,
+        set=_set_way,
+        options={"SKIP_SAVE"},
+    )  # fmt: skip
     notes: bpy.props.StringProperty(  # type: ignore[valid-type]
         name="Notes",
         description="A hint for the model, such as 'the bed is 1.4 m wide'. The built-in analysis cannot read it",

@@ -9,13 +9,14 @@ from typing import Any
 import bpy
 
 from ..pipeline.errors import RoomError
-from ..pipeline.stages import all_stages
 from ..pipeline.stages.base import Stage
-from . import consent, driver, object_list, view_state
+from . import consent, driver, object_list, view_state, ways
 from .base import RoomOperator, allow, log, stage_blocker
 from .view_state import StageRow
 
 NEXT = "NEXT"
+RAN = ("done", "drafted", "stale", "failed")
+"""States of a stage that has run."""
 
 
 class StageOperator(RoomOperator):
@@ -56,7 +57,8 @@ class StageOperator(RoomOperator):
 
 def _stage_items() -> list[tuple[str, str, str]]:
     first = (NEXT, "The Next One", "The first stage that is not done")
-    return [first, *((stage.id, stage.title, f"The stage {stage.title}") for stage in all_stages())]
+    stages = ways.path_of("draft")
+    return [first, *((stage.id, stage.title, f"The stage {stage.title}") for stage in stages)]
 
 
 def _stage_property() -> Any:
@@ -65,11 +67,11 @@ def _stage_property() -> Any:
 
 def place_of(context: Any, identifier: str) -> int:
     """The place of a stage in the order of all; RoomError when there is none, or it waits for another one."""
-    stages, state = all_stages(), view_state.peek(context.scene)
+    stages, state = ways.path(context.scene), view_state.peek(context.scene)
     rows = {row.id: row for row in state.stages} if state is not None else {}
     for place, stage in enumerate(stages):
         row = rows.get(stage.id)
-        if stage.id == identifier or (identifier == NEXT and (row is None or row.status != "done")):
+        if stage.id == identifier or (identifier == NEXT and (row is None or not row.is_done)):
             return place
     if identifier == NEXT:
         raise RoomError("Every stage is done.", "Redo one to run it again.")
@@ -86,11 +88,27 @@ def partial_blocker(context: Any, row: StageRow | None) -> str:
     """Why a stage cannot redo only the selected objects, "" when it can."""
     if row is None or not row.partial:
         return "This stage always does all objects"
-    if row.status not in ("done", "stale", "failed"):
+    if row.status not in RAN:
         return "Run the whole stage first"
     if not object_list.selected_names(context.scene):
         return "Select objects of the room in the viewport first"
     return ""
+
+
+def follows_draft(context: Any) -> bool:
+    """Whether what was not run yet is answered from a draft."""
+    state = view_state.peek(context.scene)
+    return state is not None and state.way == "draft"
+
+
+def start_left(context: Any, count: int | None) -> None:
+    """Start what is not done of the first so many stages; going stage by stage, what was only drafted is not done."""
+    stages, state = ways.path(context.scene)[:count], view_state.peek(context.scene)
+    if follows_draft(context):
+        driver.start(context.scene, stages, derived=ways.derived(context.scene, stages))
+        return
+    drafted = frozenset(row.id for row in state.left if row.status == "drafted") if state is not None else frozenset()
+    driver.start(context.scene, stages, redo=drafted)
 
 
 class CODE_AS_ROOM_OT_run_stage(StageOperator):
@@ -130,9 +148,15 @@ class CODE_AS_ROOM_OT_run_stage(StageOperator):
 
     def begin(self, context: bpy.types.Context) -> None:
         """Start one stage, whether it is done or not."""
-        stage = all_stages()[place_of(context, self.stage)]
+        stage = ways.path(context.scene)[place_of(context, self.stage)]
+        row = row_of(context, stage.id)
         if not self.selected:
-            driver.start(context.scene, [stage], again=True, fresh=self.fresh)
+            # What is run on top of a draft is asked; what was not run yet follows from it.
+            asked = (
+                {stage.id} if self.fresh or (row is not None and row.is_done) or not follows_draft(context) else set()
+            )
+            derived = ways.derived(context.scene, [stage], asked)
+            driver.start(context.scene, [stage], again=True, fresh=self.fresh, derived=derived)
             return
         blocker = partial_blocker(context, row_of(context, stage.id))
         if blocker:
@@ -158,7 +182,7 @@ class CODE_AS_ROOM_OT_run_to(StageOperator):
 
     def begin(self, context: bpy.types.Context) -> None:
         """Start the stages that are not done."""
-        driver.start(context.scene, all_stages()[: place_of(context, self.stage) + 1])
+        start_left(context, place_of(context, self.stage) + 1)
 
 
 class CODE_AS_ROOM_OT_redo_from(StageOperator):
@@ -182,8 +206,9 @@ class CODE_AS_ROOM_OT_redo_from(StageOperator):
 
     def begin(self, context: bpy.types.Context) -> None:
         """Start the stages."""
-        stages: Sequence[Stage] = all_stages()[place_of(context, self.stage) :]
-        driver.start(context.scene, stages, again=True, fresh=True)
+        stages: Sequence[Stage] = ways.path(context.scene)[place_of(context, self.stage) :]
+        asked = () if stages[0].id == ways.DRAFT else [stage.id for stage in stages]
+        driver.start(context.scene, stages, again=True, fresh=True, derived=ways.derived(context.scene, stages, asked))
 
 
 class CODE_AS_ROOM_OT_run_all(StageOperator):
@@ -197,17 +222,17 @@ class CODE_AS_ROOM_OT_run_all(StageOperator):
     def poll(cls, context: bpy.types.Context) -> bool:
         """Says why no stage can run, or that there is none left."""
         state = view_state.peek(context.scene)
-        done = state is not None and bool(state.stages) and all(row.status == "done" for row in state.stages)
+        done = state is not None and bool(state.stages) and not state.left
         left = "" if not done else "Every stage is done; redo one to run it again"
         return allow(cls, stage_blocker(context) or left)
 
     def begin(self, context: bpy.types.Context) -> None:
         """Start all stages."""
-        driver.start(context.scene, all_stages())
+        start_left(context, None)
 
 
 class CODE_AS_ROOM_OT_stop(RoomOperator):
-    """Stop the run; what was already answered is kept, and the next run goes on from there"""
+    """Stop the run; what was already answered is kept, and the next run goes on from there. What stands of a draft stays"""
 
     bl_idname = "code_as_room.stop"
     bl_label = "Stop"

@@ -7,6 +7,7 @@ Memory's entries never change once they are written, so an artifact is validated
 from __future__ import annotations
 
 from collections import Counter, OrderedDict
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, TypeVar
 
@@ -16,10 +17,13 @@ from ..pipeline.analysis.scale import scale_sentence
 from ..pipeline.artifacts.analysis import Calibration, SceneAnalysis
 from ..pipeline.artifacts.assets import ChosenAssets
 from ..pipeline.artifacts.corrections import Corrections
+from ..pipeline.artifacts.draft import DraftProgram
 from ..pipeline.artifacts.hand import HandEdits
 from ..pipeline.artifacts.layout import LayoutEdit, LayoutProgram
+from ..pipeline.draft.verdict import judge
 from ..pipeline.errors import RoomError
 from ..pipeline.memory import Entry, Memory
+from ..pipeline.models.base import ModelClient
 from ..pipeline.picture import ReferencePicture
 from ..pipeline.program.words import edit_in_words
 from ..pipeline.report import all_findings, floor_size
@@ -27,9 +31,8 @@ from ..pipeline.report_objects import ObjectRow, object_rows
 from ..pipeline.report_rounds import round_rows
 from ..pipeline.run import Run
 from ..pipeline.run_corrections import edits_of, found_of, program_of
-from ..pipeline.stages import all_stages
-from ..pipeline.stages.base import View
-from . import clients, finish_state, journals, reference, room_memory, texture_state, view_state
+from ..pipeline.stages.base import Stage, View
+from . import clients, finish_state, journals, reference, room_memory, texture_state, view_state, ways
 from .view_state import Problem, RoomState, StageRow
 
 A = TypeVar("A", bound=BaseModel)
@@ -48,7 +51,7 @@ def read(scene: Any) -> RoomState:
     state, client = RoomState(), clients.NOBODY
     try:
         client = clients.current_client()
-        state = replace(state, answers=client.describes, uses_model=client.name != "builtin")
+        state = replace(state, answers=client.describes, uses_model=client.name != "builtin", **_way(client))
     except RoomError as error:
         state = replace(state, client_problem=Problem.of(error), uses_model=True)
     picture = room_memory.picture_of(scene)
@@ -66,7 +69,7 @@ def read(scene: Any) -> RoomState:
 
 
 def _with_memory(state: RoomState, uid: int, run: Run) -> RoomState:
-    known, stages = _facts(run.memory, run.picture), _stages(run, uid)
+    known, stages = _facts(run.memory, run.picture), _stages(run, uid, ways.path_of(state.way))
     titles = {row.name: row.title for row in known["objects"] if row.name}
     textures, finish = texture_state.read(run.memory, titles), finish_state.read(run.memory, titles)
     state = replace(
@@ -79,7 +82,9 @@ def _with_memory(state: RoomState, uid: int, run: Run) -> RoomState:
 
 def _estimate(run: Run, stages: tuple[StageRow, ...]) -> str:
     """What the stages that are left may cost, "" where nothing is asked of a service."""
-    left = [row.id for row in stages if row.status not in ("done", "answered")]
+    left = [row.id for row in stages if not row.is_done and row.status != "answered"]
+    if ways.DRAFT in left:
+        left = [ways.DRAFT]  # the others are answered from it
     rounds = run.memory.settings.get("iterations", "")
     try:
         estimate = clients.run_estimate(left, int(rounds) if rounds.isdigit() else 5) if left else None
@@ -127,6 +132,7 @@ def _read_facts(memory: Memory, picture: ReferencePicture) -> dict[str, Any]:
     findings = all_findings(memory)
     return {
         **_camera_facts(memory),
+        **_draft_facts(memory),
         "score": program.score.total if program is not None else None,
         "has_layout": program is not None,
         "hand_edits": len([e for e in edits if e.origin != "parent"]),
@@ -191,16 +197,32 @@ def forget_all() -> None:
     _known.clear()
 
 
-def _stages(run: Run, uid: int) -> tuple[StageRow, ...]:
+def _draft_facts(memory: Memory) -> dict[str, Any]:
+    """Fields of `RoomState`: what is said of the draft."""
+    verdict = judge(memory) if kept(memory, DraftProgram) is not None else None
+    if verdict is None:
+        return {}
+    return {"has_draft": True, "verdict": verdict.sentence, "is_poor": verdict.is_poor}
+
+
+def _way(client: ModelClient) -> dict[str, Any]:
+    """Fields of `RoomState`: how the room is made."""
+    return {"way": ways.chosen(client), "offers_draft": ways.offers_draft(client)}
+
+
+def _stages(run: Run, uid: int, path: Sequence[Stage]) -> tuple[StageRow, ...]:
     rows: list[StageRow] = []
     blocked = ""
-    for stage in all_stages():
+    for stage in path:
         status: str = run.status(stage)
+        entry = run.memory.latest_entry(stage.writes[0].__name__, (stage.id,))
+        by_draft = entry is None or ways.is_derived(entry)
+        status = "drafted" if status == "done" and entry is not None and by_draft else status
         failure = view_state.failure(uid, stage.id)
         detail = "What it was made from has changed" if status == "stale" else ""
         shown = status if failure is None else "failed"
         detail = detail if failure is None else failure.sentence
-        rows.append(StageRow(stage.id, stage.title, shown, detail, blocked, stage.partial))
+        rows.append(StageRow(stage.id, stage.title, shown, detail, blocked, stage.partial, by_draft))
         if status in ("not run", "answered") and not blocked:
             blocked = f"It needs the stage before it: {stage.title}"
     return tuple(rows)

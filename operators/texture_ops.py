@@ -12,7 +12,7 @@ from ..pipeline.artifacts.textures import TextureSource
 from ..pipeline.memory import Memory
 from ..pipeline.run_textures import ORDERS, choose_source, prefer
 from ..pipeline.stages import all_stages
-from . import driver, own_room, room_memory, view_state
+from . import driver, own_room, room_memory, view_state, ways
 from .base import RoomOperator, allow, busy_blocker, stage_blocker
 from .stage_ops import StageOperator
 
@@ -143,9 +143,13 @@ class CODE_AS_ROOM_OT_make_textures(StageOperator):
         """Start the stage, and those after it that were done: they go on from its program."""
         state, stages = view_state.peek(context.scene), all_stages()
         place = next(n for n, stage in enumerate(stages) if stage.id == TEXTURES)
-        done = {row.id for row in state.stages if row.status in ("done", "stale")} if state is not None else set()
+        done = (
+            {row.id for row in state.stages if row.status in ("done", "drafted", "stale")}
+            if state is not None
+            else set()
+        )
         todo = [stages[place], *(s for s in stages[place + 1 :] if s.id in done)]
-        driver.start(context.scene, todo, again=True, step=self.bl_label)
+        driver.start(context.scene, todo, again=True, step=self.bl_label, derived=ways.derived(context.scene, todo))
 
 
 CLASSES = (

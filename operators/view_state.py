@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from ..pipeline.artifacts.assets import ChosenAsset
     from ..pipeline.report_objects import ObjectRow
     from ..pipeline.report_rounds import RoundRow
+    from . import ways
 
 log = logging.getLogger(__name__)
 MOST_EDITS = 12
@@ -56,10 +57,11 @@ class StageRow:
     """One stage in the panel.
 
     Attributes:
-        status: "not run", "answered" (only its result is missing, nothing would be asked), "done", "stale" (something
-            it read has changed) or "failed".
+        status: "not run", "answered" (only its result is missing, nothing would be asked), "done", "drafted" (done, with
+            answers taken from a draft), "stale" (something it read has changed) or "failed".
         blocked: why it cannot run yet, "" when it can.
         partial: whether it can do some objects anew and leave the others.
+        by_draft: whether no model was asked for its present result, if it has one.
     """
 
     id: str
@@ -68,6 +70,12 @@ class StageRow:
     detail: str = ""
     blocked: str = ""
     partial: bool = False
+    by_draft: bool = True
+
+    @property
+    def is_done(self) -> bool:
+        """Whether its result stands."""
+        return self.status in ("done", "drafted")
 
 
 @dataclass(frozen=True)
@@ -83,6 +91,8 @@ class RoomState:
         textures: the images on surfaces, and what the artist says of their sources.
         finish: the light, and what was corrected.
         estimate: what running the stages that are left may cost, in words; spending: what was spent, and the cap.
+        way: "draft" or "stages"; offers_draft: whether there is a choice. has_draft: whether the room was drafted;
+            verdict: how good the draft is, in a sentence; is_poor: whether going stage by stage is advised.
     """
 
     picture_name: str = ""
@@ -113,6 +123,11 @@ class RoomState:
     has_memory: bool = False
     estimate: str = ""
     spending: str = ""
+    way: ways.Way = "stages"
+    offers_draft: bool = False
+    has_draft: bool = False
+    verdict: str = ""
+    is_poor: bool = False
 
     @property
     def blocker(self) -> str:
@@ -121,6 +136,12 @@ class RoomState:
             return "Load a picture of a room first"
         problem = self.problem or self.client_problem
         return problem.message.rstrip(".") if problem else ""
+
+    @property
+    def left(self) -> tuple[StageRow, ...]:
+        """The stages that are still to be run; going stage by stage, also those that were only drafted."""
+        done = ("done", "drafted") if self.way == "draft" else ("done",)
+        return tuple(row for row in self.stages if row.status not in done)
 
     @cached_property
     def by_id(self) -> Mapping[str, ObjectRow]:

@@ -8,17 +8,18 @@ from typing import Any
 
 import bpy
 
-from ..operators import driver, journals, stage_ops, view_state
+from ..operators import driver, journals, stage_ops, view_state, ways
 from ..operators.job import Progress
 from ..operators.view_state import RoomState, StageRow
-from ..pipeline.stages import all_stages
 from .base import RoomPanel, base_package, known_operator
+from .draft import draw_button, draw_verdict, draw_way
 from .sentences import draw_sentence, line_length, plural
 
 ICONS = {
     "not run": "RADIOBUT_OFF",
     "answered": "RADIOBUT_ON",
     "done": "CHECKMARK",
+    "drafted": "GREASEPENCIL",
     "stale": "FILE_REFRESH",
     "failed": "ERROR",
 }
@@ -26,6 +27,7 @@ STATUS = {
     "not run": "",
     "answered": "answered, not applied",
     "done": "done",
+    "drafted": "drafted",
     "stale": "out of date",
     "failed": "failed",
 }
@@ -65,6 +67,7 @@ class CODE_AS_ROOM_PT_stages(RoomPanel):
         """What answers, a row a stage, progress, and how the last run ended."""
         draw_model(layout, context, state)
         progress = driver.progress_of(context.scene)
+        draw_way(layout, context, state, progress is None)
         if state.stages:
             column = layout.box().column(align=True)
             for stage in state.stages:
@@ -72,7 +75,8 @@ class CODE_AS_ROOM_PT_stages(RoomPanel):
         big = layout.row()
         big.scale_y = 1.4
         if progress is None:
-            big.operator("code_as_room.run_all", icon="PLAY")
+            draw_button(big, state)
+            draw_verdict(layout, context, state)
             for sentence in (state.estimate, state.spending):
                 if sentence:
                     draw_sentence(layout, sentence, context)
@@ -122,9 +126,10 @@ class StageMenu(bpy.types.Menu):
         if row is None:
             return
         layout.operator_context = "INVOKE_DEFAULT"
-        ran = row.status in ("done", "stale", "failed")
+        ran = row.status in stage_ops.RAN
         _verb(layout, "code_as_room.run_stage", "Run", "PLAY", row, not row.blocked)
-        _verb(layout, "code_as_room.run_to", "Run to Here", "TRACKING_FORWARDS", row, row.status != "done")
+        left = state is not None and row in state.left
+        _verb(layout, "code_as_room.run_to", "Run to Here", "TRACKING_FORWARDS", row, left)
         layout.separator()
         operator = _verb(layout, "code_as_room.run_stage", "Redo", "LOOP_BACK", row, ran and not row.blocked)
         operator.fresh = True
@@ -152,7 +157,7 @@ def menu_name(stage: str) -> str:
 def _stage_menus() -> tuple[type, ...]:
     return tuple(
         type(menu_name(stage.id), (StageMenu,), {"bl_idname": menu_name(stage.id), "stage": stage.id})
-        for stage in all_stages()
+        for stage in ways.path_of("draft")
     )
 
 

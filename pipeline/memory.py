@@ -23,6 +23,7 @@ from .artifacts.assets import ChosenAssets
 from .artifacts.common import Artifact
 from .artifacts.correction import CorrectionReport
 from .artifacts.corrections import Corrections, Found, Rescaled
+from .artifacts.draft import DraftProgram
 from .artifacts.graph import MinorObjects, SceneGraph
 from .artifacts.hand import HandEdits
 from .artifacts.layout import LayoutProgram
@@ -36,6 +37,7 @@ FORMAT = "code-as-room/memory/1"
 KINDS: dict[str, type[Artifact]] = {
     kind.__name__: kind
     for kind in (
+        DraftProgram,
         SceneAnalysis,
         Calibration,
         SceneGraph,

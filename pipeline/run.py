@@ -22,6 +22,7 @@ from .artifacts.layout import LayoutEdit, LayoutProgram
 from .artifacts.objects import Furnishing
 from .ask import AskEvent, AskResult, perform_ask
 from .backend import HandScene, SceneBackend, Studio
+from .draft.kept import DRAFTED, is_before_draft, is_drafted
 from .errors import Cancelled, RoomError
 from .journal import AnswerJournal, JournalledClient, KeptAnswer
 from .memory import EntryMeta, Memory, dump_memory, now
@@ -120,7 +121,7 @@ class Run:
         entry = self.memory.latest_entry(stage.writes[0].__name__, (stage.id,))
         inputs = self.inputs(stage)
         if entry is not None and entry.meta.inputs == inputs:
-            return "stale" if lacks_images(self, stage) else "done"
+            return "stale" if lacks_images(self, stage) or is_before_draft(self.memory, stage.id, entry) else "done"
         if self.journal is not None and self.journal.has_finished(stage.id, name_of(self.client, stage.id), inputs):
             return "answered"
         return "not run" if entry is None else "stale"
@@ -143,8 +144,11 @@ class Run:
                 recalled[read.kind] = found
         corrections = corrections_of(self.memory)
         settings, edits = dict(self.memory.settings), tuple(self.hand_edits())
-        if settings.get("objects", "auto") not in ("programs", "library"):
-            settings["objects"] = modelling_of(name_of(self.client, stage.id))
+        client = name_of(self.client, stage.id)
+        if is_drafted(client):
+            settings["objects"] = DRAFTED
+        elif settings.get("objects", "auto") not in ("programs", "library"):
+            settings["objects"] = modelling_of(client)
         return View(self.picture, artifacts, settings, edits, corrections, only, recalled)
 
     def hand_edits(self) -> list[LayoutEdit]:
@@ -261,6 +265,9 @@ class StageSession:
 
     Args:
         waits: keep the result back until `apply`.
+
+    Attributes:
+        cut: why the stage was ended early with what was heard until then, None when it was not; its driver says so.
     """
 
     def __init__(
@@ -282,6 +289,7 @@ class StageSession:
         self._asked: list[AskResult] = []
         self._rounds = self._images = 0
         self._notes: list[str] = []
+        self.cut: BaseException | None = None
         self._generator = stage.run(run.view(stage, only))
         self.wish: Wish | None = None
         self.finished = False
@@ -403,7 +411,7 @@ class StageSession:
         except StopIteration as stop:
             self.wish, self.finished = None, True
             self._written = stop.value
-            if self.run.journal is not None and self._only is None:
+            if self.run.journal is not None and self._only is None and self.cut is None:
                 self.run.journal.finish(self.stage.id, self._asks, self._inputs)
             if not self._waits:
                 self.apply()
@@ -431,7 +439,7 @@ class StageSession:
             completion_tokens=sum(r.completion_tokens for r in self._asked),
             seconds=round(time.monotonic() - self._started, 3),
             inputs=inputs,
-            notes=self._notes,
+            notes=self._notes if self.cut is None else [*self._notes, f"Ended early, with what was heard: {self.cut}"],
         )
         for artifact in self._written:
             self.run.memory.append(self.stage.id, artifact, meta)

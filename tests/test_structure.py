@@ -19,7 +19,7 @@ RUNTIME = {"requests", "urllib3", "PIL", "numpy", "pydantic", "pydantic_core"}
 LAYERS = {
     "errors": 0, "artifacts": 0, "program": 1, "geometry": 1, "library": 1, "models": 1, "picture": 1, "memory": 1,
     "backend": 1, "spending": 1, "journal": 1, "analysis": 2, "layout": 2, "objects": 2, "surfaces": 2,
-    "retrieval": 2, "textures": 2, "light": 2, "correction": 2, "materials": 2, "stages": 3,
+    "retrieval": 2, "textures": 2, "light": 2, "draft": 2, "correction": 2, "materials": 2, "stages": 3,
     "prompting": 4, "ask": 4, "run": 5, "report": 5, "scene": 6,
 }  # fmt: skip
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from ..artifacts.analysis import Finding
@@ -68,19 +69,22 @@ class Detailing:
         before: Geometry,
         own: OwnModelling,
         keep: frozenset[str],
+        twins: Mapping[str, str] | None = None,
     ) -> Detailing:
         """Sort out what is to be modelled.
 
         Args:
             standing: the room text that this stage wrote the last time, "" for none.
             keep: ids that stay as they stand there; what is not furnished there is modelled nevertheless.
+            twins: id of each thing that is made like another -> id of that one, where that is known; None where sizes and
+                colours say it.
         """
         former = _read(standing)
         present = [p.id for p in layout.proxies]
         apart = {i for i in present if i in own.functions or i in own.boxes}
         kept = frozenset(i for i in present if i in keep and i in former.furnished and i not in apart)
         todo = [p for p in layout.proxies if p.id not in apart and p.id not in kept]
-        members = groups(alike(todo, descriptions))
+        members = groups(alike(todo, descriptions) if twins is None else _by_twins(todo, twins))
         firsts = [p for p in todo if p.id in members]
         taken = {n for i in kept for n in former.closure([former.functions.get(i, "")])}
         for snippet in own.functions.values():
@@ -88,7 +92,7 @@ class Detailing:
         names: dict[str, str] = {}
         for proxy in firsts:
             names[proxy.id] = function_name(proxy.id, {*taken, *names.values()})
-        for first, group in members.items():
+        for first, group in members.items() if twins is None else ():
             for other in (i for i in group if other_colours(descriptions.of(first), descriptions.of(i))):
                 names[other] = function_name(other, {*taken, *names.values()})
         return Detailing(layout, descriptions, style, firsts, members, names, former, kept, own, before)
@@ -247,6 +251,16 @@ class Detailing:
             if made.note and i not in self.notes and i not in self.written
         ]
         return found
+
+
+def _by_twins(proxies: Sequence[ProxyLine], twins: Mapping[str, str]) -> dict[str, str]:
+    """The first of each thing's kind: the one that it is said to be like, where that is among them."""
+    found: dict[str, str] = {}
+    for proxy in proxies:
+        wanted = twins.get(proxy.id, proxy.id)
+        there = next((p.id for p in proxies if twins.get(p.id, p.id) == wanted), proxy.id)
+        found[proxy.id] = there
+    return found
 
 
 def _read(text: str) -> Modelling:

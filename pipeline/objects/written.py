@@ -19,11 +19,16 @@ from ..program.lines import LINE_TYPES, called_name
 from ..program.parse_safe import parse
 from ..program.prelude.palette import ROLE_COLOURS, split_role
 from ..program.prelude.shape import Shape
+from ..program.reuse import remember
 from .checks import Checked, check, extent
 
 _FENCE = re.compile(r"```(?:python)?\s*\n(.*?)```", re.DOTALL)
-_STRETCH = 1.6
+SHARED = "shared_"
+"""What the names of defs begin with that several objects' programs have in common, text by text; they stay as they are."""
+STRETCH = 1.6
 """How far a program's shapes may be stretched to fill their proxy before that would show."""
+FAR = 2.2
+"""The same for drafts, where what stands otherwise was not made by looking at the picture."""
 _LIKE_ROLES: dict[str, str] = {
     "chrome": "steel", "aluminium": "steel", "aluminum": "steel", "iron": "metal", "gold": "brass", "copper": "brass",
     "oak": "wood", "walnut": "dark wood", "pine": "wood", "timber": "wood", "plywood": "wood", "rattan": "wicker",
@@ -49,11 +54,14 @@ class Written:
     checked: Checked
 
 
-def take_program(text: str, proxy: ProxyLine, name: str, taken: Collection[str] = ()) -> Written:
+def take_program(
+    text: str, proxy: ProxyLine, name: str, taken: Collection[str] = (), stretch: float = STRETCH
+) -> Written:
     """Make a model's program an object's: under its own names, filling its proxy, with known materials.
 
     Args:
         name: that its def is to have. taken: names that its helpers must not have.
+        stretch: how far its shapes may be stretched to fill the proxy.
 
     Raises:
         ProgramError: it is outside the room language, over a limit, or makes nothing of use; the line is in the text.
@@ -74,18 +82,22 @@ def take_program(text: str, proxy: ProxyLine, name: str, taken: Collection[str] 
     if not shapes:
         raise ProgramError("the program makes no shapes")
     checked = check(shapes, size, proxy.placement)
-    fixes = _fixes(shapes, size)
+    fixes = _fixes(shapes, size, stretch)
     if fixes is None:
         raise ProgramError(f"its shapes are far from the size {_sizes(size)}: {'; '.join(checked.findings[:3])}")
     if not fixes and not _roles(shapes):
+        remember(head + source, name, size, shapes)
         return Written(name, source, tuple(shapes), checked)
     inner = f"{name}_shapes"
     if main != name or inner in taken:
         raise ProgramError("its names cannot be used")
     source = _renamed(source, {name: inner})
     source += f"\n\n\ndef {name}(size):\n    return {_wrapped(f'{inner}(size)', fixes, _roles(shapes))}"
-    library = catalogue.source(_library_names(source))
-    shapes = evaluate_object(f"{library}\n\n{source}{call}", "made_for_room")
+    # What was made is fitted as the wrapped def will do it: making it again would take as long as the first time.
+    fit = f"def fitted(shapes, size):\n    return {_wrapped('shapes', fixes, _roles(shapes))}\n"
+    needed = catalogue.source(["fill"]) if fixes else ""
+    shapes = evaluate_object(f"{needed}\n\n{fit}", "fitted", args=(shapes, size))
+    remember(f"{catalogue.source(_library_names(source))}\n\n{source}", name, size, shapes)
     return Written(name, source, tuple(shapes), checked)
 
 
@@ -99,11 +111,11 @@ def _quoted(text: str) -> str:
     return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
 
 
-def _fixes(shapes: Sequence[Shape], size: Sequence[float]) -> bool | None:
+def _fixes(shapes: Sequence[Shape], size: Sequence[float], stretch: float) -> bool | None:
     """Whether the shapes have to be stretched to fill the proxy; None where that would spoil them."""
     low, high = extent(shapes)
     ratios = np.array(size) / np.maximum(high - low, 1e-6)
-    if ratios.max() > _STRETCH or ratios.min() < 1 / _STRETCH:
+    if ratios.max() > stretch or ratios.min() < 1 / stretch:
         return None
     middle = np.abs((low + high)[:2] / 2).max()
     return bool(np.abs(ratios - 1).max() > 0.001 or middle > 0.001 or abs(low[2]) > 0.001)
@@ -153,7 +165,8 @@ def _named(source: str, tree: ast.Module, name: str, taken: Collection[str]) -> 
     }
     names = {main.name: name}
     for other in [*(d.name for d in defs if d is not main), *sorted(bound)]:
-        names[other] = f"{name}_{other}" if other in library or other in taken or not other.startswith(name) else other
+        own = other.startswith((name, SHARED)) and other not in library and other not in taken
+        names[other] = other if own else f"{name}_{other}"
     text = "\n\n\n".join(kept)
     changed = {old: new for old, new in names.items() if old != new}
     return name, _renamed(text, changed) if changed else text

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import TypeVar
+from typing import Protocol, TypeVar
 
 from pydantic import BaseModel
 
@@ -105,6 +105,16 @@ class View:
         return frozenset(ids | {name for i in ids if (name := name_now(self.hand_edits, i)) is not None})
 
 
+class Growth(Protocol):
+    """Makes rooms of an answer that is still being written."""
+
+    def hear(self, text_so_far: str) -> str | None:
+        """A whole valid room program when a new statement became complete, else None; after another try of the question
+        the text may be shorter. Called in one thread at a time; never raises.
+        """
+        ...
+
+
 @dataclass(frozen=True)
 class Stage:
     """A stage: its id, its title for the artist, what it reads and writes, and its generator.
@@ -114,6 +124,8 @@ class Stage:
         notes: whether it asks the model about objects, so that the artist's notes on them go along.
         partial: whether it can do chosen objects anew and leave the rest (`View.only`).
         recalls: what it may look at without depending on it, such as what it wrote itself the last time.
+        growth: what makes rooms of its first answer while that is being written; such a stage ends with what was heard
+            until then when it is stopped.
     """
 
     id: str
@@ -125,3 +137,4 @@ class Stage:
     notes: bool = False
     partial: bool = False
     recalls: tuple[Reads, ...] = ()
+    growth: Callable[[View], Growth] | None = None

@@ -32,6 +32,7 @@ from ..artifacts.corrections import Corrections, Found, Rescaled
 from ..artifacts.layout import LayoutProgram
 from ..artifacts.replies import AnalysisReply, SecondLookReply
 from ..artifacts.trust import Sources
+from ..draft.kept import DRAFTED
 from ..errors import RoomError
 from ..layout.hand import apply_hand_edits
 from ..layout.reshell import follow_scale, follow_shell
@@ -74,7 +75,8 @@ def _anew(view: View) -> Generator[Wish, Any, Found]:
         merged = merge_second_look(stated, second, [None, *crops, *(part for _, part in surfaces)])
     yield Tell("Fitting the camera", 3, 3)
     before = view.recall(Found)
-    if before is not None:
+    # A draft's programs are known by its own ids.
+    if before is not None and view.settings.get("objects") != DRAFTED:
         merged = keep_ids(before.analysis, merged)
     return first if first is not None and merged == stated else _fitted(view, merged)
 

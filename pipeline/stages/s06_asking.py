@@ -4,14 +4,17 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Sequence
+from dataclasses import replace
 from typing import Any
 
 from ..artifacts.analysis import Calibration, SceneAnalysis
 from ..artifacts.layout import ProxyLine
 from ..artifacts.objects import PiecesReply, ProgramReply, ProgramsReply
+from ..draft.kept import DRAFTED
 from ..errors import ProgramError
 from ..library import catalogue
 from ..objects.asking import apart_from, batches, crop_of, facing_words, object_line, picture_box
+from ..objects.checks import check
 from ..objects.choose import candidates
 from ..objects.cloths import is_lying_cloth
 from ..objects.crops import TILE, sheet, side_by_side
@@ -19,7 +22,7 @@ from ..objects.detailing import Detailing
 from ..objects.examples import nearest_programs
 from ..objects.eyes import eyes_on
 from ..objects.mending import mended
-from ..objects.written import Written, take_program
+from ..objects.written import FAR, STRETCH, Written, take_program
 from ..program.prelude.palette import category_family
 from ..program.reference import reference, short_reference
 from .base import View
@@ -89,7 +92,8 @@ def _facts(view: View, detailing: Detailing, proxy: ProxyLine) -> tuple[str, ...
 
 def write_programs(view: View, detailing: Detailing) -> Asking:
     """Programs for the larger objects in two rounds: written from the crops, then mended once after a look at renders."""
-    chosen = sorted(detailing.todo, key=lambda p: -_weight(p))[:MOST_PROGRAMS]
+    drafted = view.settings.get("objects") == DRAFTED
+    chosen = sorted(detailing.todo, key=lambda p: -_weight(p))[: None if drafted else MOST_PROGRAMS]
     chosen.sort(key=lambda p: (category_family(p.category), p.category, p.id))
     groups = batches(chosen, BATCH)
     requests = tuple(_first_request(view, detailing, n, batch) for n, batch in enumerate(groups, 1))
@@ -104,7 +108,13 @@ def write_programs(view: View, detailing: Detailing) -> Asking:
         return
     drafts = {p.id: _Draft(p, replies.get(p.id)) for p in chosen}
     for draft in drafts.values():
-        draft.take(detailing)
+        draft.take(detailing, FAR if drafted else STRETCH)
+    if drafted:
+        # Nobody looks at them now; that is what refining does.
+        for draft in drafts.values():
+            if draft.written_by_model:
+                draft.keep_drafted(detailing)
+        return
     yield Tell("Looking at the objects", 2, 3)
     for draft in drafts.values():
         if draft.made is not None:
@@ -147,10 +157,10 @@ class _Draft:
         """Whether there is anything to mend."""
         return bool(self.source)
 
-    def take(self, detailing: Detailing) -> None:
+    def take(self, detailing: Detailing, stretch: float = STRETCH) -> None:
         """Evaluate and check what was written."""
         if self.source:
-            self.made, self.problem, self.source = self._evaluated(detailing, self.source)
+            self.made, self.problem, self.source = self._evaluated(detailing, self.source, stretch)
 
     def mend(self, detailing: Detailing, reply: ProgramReply | None) -> None:
         """Take a correction where it is better by the checks, or as good: it was written after a look."""
@@ -173,12 +183,22 @@ class _Draft:
             f"Its program could not be used ({worst[:160].rstrip('.')}); a library piece is there."
         )
 
-    def _evaluated(self, detailing: Detailing, source: str) -> tuple[Written | None, str, str]:
+    def keep_drafted(self, detailing: Detailing) -> None:
+        """Hand over what a draft has, unless it is of no use even when it is fitted into its box."""
+        made = self.made
+        if made is not None and made.checked.penalty >= 1.0:
+            fitted = check(made.shapes, self.proxy.size, self.proxy.placement)
+            self.made = replace(made, checked=fitted)
+        self.keep(detailing)
+
+    def _evaluated(
+        self, detailing: Detailing, source: str, stretch: float = STRETCH
+    ) -> tuple[Written | None, str, str]:
         """What the program makes, or why it cannot be used; and the program itself, rewritten where it had to be."""
         name = detailing.names[self.proxy.id]
         taken = {*detailing.standing.defs, *(n for i, n in detailing.names.items() if i != self.proxy.id)}
         try:
-            return take_program(source, self.proxy, name, taken), "", source
+            return take_program(source, self.proxy, name, taken, stretch), "", source
         except ProgramError as error:
             problem = str(error)
         try:
@@ -186,7 +206,7 @@ class _Draft:
             if rewritten is None:
                 return None, problem, source
             source = rewritten
-            return take_program(source, self.proxy, name, taken), "", source
+            return take_program(source, self.proxy, name, taken, stretch), "", source
         except ProgramError as error:
             return None, str(error), source
 

@@ -8,8 +8,10 @@ programs; what fails leaves the library piece in place, with a note.
 from __future__ import annotations
 
 from ..artifacts.analysis import Calibration, Finding, SceneAnalysis
+from ..artifacts.draft import DraftProgram
 from ..artifacts.layout import Layout, LayoutProgram, LedgerEntry
 from ..artifacts.objects import Descriptions, Geometry, ObjectProgram, OwnModelling, RoomStyle
+from ..draft.kept import DRAFTED
 from ..errors import RoomError
 from ..layout.hand import apply_hand_edits, name_now
 from ..layout.pins import pinned
@@ -40,11 +42,12 @@ def run(view: View) -> StageRun:
         names.in_geometry(view.recall(Geometry) or Geometry()),
         names.in_own(view.recall(OwnModelling) or OwnModelling()),
         _kept(view, layout),
+        _as_drafted(view, names),
     )
     yield Tell("Choosing from the library", 1, 3)
     detailing.from_library()
     yield Tell("Modelling the objects", 2, 3)
-    if detailing.todo and view.settings.get("objects") == "programs":
+    if detailing.todo and view.settings.get("objects") in ("programs", DRAFTED):
         yield from write_programs(view, detailing)
     elif detailing.todo:
         yield from choose_pieces(view, detailing)
@@ -55,6 +58,12 @@ def run(view: View) -> StageRun:
     ledger = [_ledger_line(view, entry, geometry) for entry in before.ledger]
     program = carried_on(view, before, ID, text, layout, findings, ledger, iterations=[])
     return [program, geometry.model_copy(update={"findings": [*geometry.findings, _summary(geometry)]})]
+
+
+def _as_drafted(view: View, names: _Names) -> dict[str, str] | None:
+    """Which things the draft makes like others, where it answers this stage; None where the measurements say it."""
+    draft = view.recall(DraftProgram) if view.settings.get("objects") == DRAFTED else None
+    return None if draft is None else {names.now(i): names.now(first) for i, first in draft.twins.items()}
 
 
 class _Names(Renames):
@@ -131,5 +140,5 @@ STAGE = Stage(
     settings=("objects",),
     notes=True,
     partial=True,
-    recalls=(Reads(LayoutProgram, (ID, "s07_surfaces")), Reads(Geometry), Reads(OwnModelling)),
+    recalls=(Reads(LayoutProgram, (ID, "s07_surfaces")), Reads(Geometry), Reads(OwnModelling), Reads(DraftProgram)),
 )

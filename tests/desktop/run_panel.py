@@ -25,7 +25,7 @@ from typing import Any
 ROOT = Path(__file__).resolve().parents[2]
 PARTS = ("__init__.py", "blender_manifest.toml", "operators", "panels", "pipeline", "prompts")
 INSIDE = Path(__file__).with_name("inside") / "main.py"
-TIME_OUT = 600
+TIME_OUT = 1800
 
 
 class DesktopError(Exception):
