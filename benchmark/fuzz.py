@@ -147,10 +147,13 @@ def share(part: int, parts: int, count: int, seed: int, minutes: float, kinds: t
         left = max(0.0, began + 60 * minutes - now)
         # The quick ones may take what they need.
         until = now + (left / (len(mine) - index) if place in slow else left)
-        rows.append(through(place, numbers[place], seed, until))
-        print(
-            f"{time.monotonic() - began:6.0f} s  {'/'.join(place)}: {rows[-1].done} done", file=sys.stderr, flush=True
-        )
+        row = through(place, numbers[place], seed, until)
+        rows.append(row)
+        # At once, so that a run which is ended has not been for nothing.
+        said = f"{row.mutated} mutated, {row.read} read, {row.done} done, {row.stopped} stopped, {row.left} left"
+        wrong = "".join(f"\n{text}" for text in row.wrong)
+        line = f"{time.monotonic() - began:6.0f} s  {'/'.join(place)}: {said}, {len(row.wrong)} wrong{wrong}"
+        print(line, file=sys.stderr, flush=True)
     return rows
 
 

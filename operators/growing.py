@@ -61,11 +61,12 @@ class Growing:
         self._arrays: dict[str, MeshArrays] = {}
         self._thread: threading.Thread | None = None
         self._program = self._taken = ""
+        self._planned: tuple[str, list[LayoutEdit]] = "", []
         self._ready: _Room | None = None
         self._building: tuple[Building, _Room] | None = None
         self._edits: list[LayoutEdit] = []  # in the program that stands
         self._found: list[LayoutEdit] = []  # in the scene only
-        self._over = False
+        self._over = self._quiet = False
         self._waiting = ""
         self._begin()
 
@@ -99,6 +100,8 @@ class Growing:
         """
         if not isinstance(wish, Ask):
             raise error
+        with self._lock:
+            self._quiet, self._waiting = True, None  # the stage's own reading of it comes next, and needs the time
         if wish.optional:
             return [None] * len(wish.requests)
         if not self.stands or [request.reply for request in wish.requests] != [PlainReply]:
@@ -109,7 +112,7 @@ class Growing:
 
     def _begin(self) -> None:
         """Work on what waits; the lock is held."""
-        if self._thread is None and not self._over:
+        if self._thread is None and not (self._over or self._quiet):
             self._thread = threading.Thread(target=self._work, name="code-as-room-growing", daemon=True)
             self._thread.start()
 
@@ -140,17 +143,16 @@ class Growing:
         self._taken = text[:end]
         if end < len(text):
             with self._lock:
-                self._waiting = self._waiting or text
+                self._waiting = None if self._quiet else self._waiting or text
         return self._taken
 
     def _grow(self, text: str) -> None:
         self._program = self._growth.hear(text) or self._program
-        edits, ready = [*self._edits, *self._found], self._ready
-        if not self._program:
+        edits = [*self._edits, *self._found]
+        if not self._program or (self._program, edits) == self._planned:
             return
+        self._planned = self._program, edits
         patched, _ = self._meanwhile.patched(self._program, edits)
-        if ready is not None and ready.plan.text == patched and ready.edits == edits:
-            return
         plan = plan_build(patched, meshes=False)
         plan.room.arrays = self._arrays  # each mesh is worked out once for all the rooms of this draft
         for target in plan.room.targets:
