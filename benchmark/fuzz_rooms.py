@@ -42,7 +42,7 @@ _PIECES: tuple[tuple[str, str, dict[str, str]], ...] = (
     ("table_lamp_upper", "table_lamp", {}),
     ("laptop_1", "laptop", {}),
     ("bench_1", "bench", {}),
-    ("picture_1", "picture", {}),
+    ("picture_1", "picture_frame", {}),
 )
 
 

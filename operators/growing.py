@@ -78,7 +78,7 @@ class Growing:
     @property
     def has_news(self) -> bool:
         """Whether something waits for the main thread."""
-        return self._ready is not None or self._building is not None
+        return not self._over and (self._ready is not None or self._building is not None)
 
     # ---- the worker's side ----
 

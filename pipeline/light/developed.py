@@ -32,6 +32,8 @@ _MARGIN = 0.08
 _BLACK = (28.0, 52.0)
 _WHITE = (238.0, 248.0)
 """Values of the darkest and the brightest that a picture has: from where to where it counts as washed out."""
+_DIM = (195.0, 212.0)
+"""Brightest values of pictures without anything white, which tell nothing."""
 _KEPT = 75.0
 """Per cent of the picture that are darker than what keeps its brightness."""
 
@@ -49,7 +51,8 @@ def wash(picture: ReferencePicture) -> float:
     black, white = np.percentile(inner, (0.3, 99.7))
     dark = (black - _BLACK[0]) / (_BLACK[1] - _BLACK[0])
     bright = (_WHITE[1] - white) / (_WHITE[1] - _WHITE[0])
-    return float(np.clip(dark, 0.0, 1.0) * np.clip(bright, 0.0, 1.0))
+    lit = (white - _DIM[0]) / (_DIM[1] - _DIM[0])
+    return float(np.clip((dark, bright, lit), 0.0, 1.0).prod())
 
 
 @functools.lru_cache(maxsize=2)

@@ -254,3 +254,26 @@ def test_another_file_ends_the_growing(scene, begin):
     driver.cancel_for_load()
     writer.go_on.release(5)
     assert not job.tick(driver.BUDGET) and not driver.is_running() and standing() == {"bed"}
+
+
+def test_what_completes_nothing_builds_nothing(scene, begin, monkeypatch):
+    built = []
+    commit = ResolvedScene.commit
+
+    def noted(self, plan, made):
+        built.append(plan.text)
+        commit(self, plan, made)
+
+    monkeypatch.setattr(ResolvedScene, "commit", noted)
+    writer = Writer("bed\n", "d", "e", "s", "k\n")
+    job = begin(writer)
+    until(job, lambda: standing() == {"bed"})
+    for _ in range(3):
+        writer.go_on.release()
+        assert writer.told.acquire(timeout=WAIT)
+        until(job, lambda: not job._growing._thread)
+        until(job, lambda: not job._growing.has_news)
+    assert built == [room(["bed"])]
+    writer.go_on.release(5)
+    driver.run_blocking()
+    assert standing() == {"bed", "desk", "asked_again"}

@@ -73,3 +73,11 @@ def test_drawings_stay_as_they_are(tmp_path: Path) -> None:
     Image.fromarray(plan).save(tmp_path / "plan.png")
     picture = load_picture(tmp_path / "plan.png")
     assert np.array_equal(developed(picture), picture.pixels())
+
+
+def test_a_picture_with_nothing_white_in_it_tells_nothing(tmp_path: Path) -> None:
+    boards = np.full((300, 400, 3), (150, 120, 90), dtype=np.uint8)
+    boards[::20] = (100, 75, 55)
+    Image.fromarray(boards).save(tmp_path / "boards.png")
+    picture = load_picture(tmp_path / "boards.png")
+    assert np.array_equal(developed(picture), picture.pixels())
