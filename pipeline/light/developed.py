@@ -32,7 +32,7 @@ _MARGIN = 0.08
 _BLACK = (28.0, 52.0)
 _WHITE = (238.0, 248.0)
 """Values of the darkest and the brightest that a picture has: from where to where it counts as washed out."""
-_DIM = (195.0, 212.0)
+_DIM = (180.0, 200.0)
 """Brightest values of pictures without anything white, which tell nothing."""
 _KEPT = 75.0
 """Per cent of the picture that are darker than what keeps its brightness."""
@@ -45,10 +45,11 @@ def wash(picture: ReferencePicture) -> float:
     # A single pixel of black is noise, an edge that was sharpened, or a letter.
     values = np.asarray(image.filter(ImageFilter.GaussianBlur(1.0)), dtype=float)
     high, wide = (round(_MARGIN * n) for n in values.shape[:2])
-    inner = luminance(values[high : values.shape[0] - high, wide : values.shape[1] - wide]).ravel()
+    inner = values[high : values.shape[0] - high, wide : values.shape[1] - wide].reshape(-1, 3)
     if not inner.size:
         return 0.0
-    black, white = np.percentile(inner, (0.3, 99.7))
+    # Strong colours do not come out of such a transform either: one of red, green and blue would be at its end.
+    black, white = np.percentile(luminance(inner), 0.3), np.percentile(inner.max(axis=1), 99.7)
     dark = (black - _BLACK[0]) / (_BLACK[1] - _BLACK[0])
     bright = (_WHITE[1] - white) / (_WHITE[1] - _WHITE[0])
     lit = (white - _DIM[0]) / (_DIM[1] - _DIM[0])
