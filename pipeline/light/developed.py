@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageFilter
 
 from ..picture import ReferencePicture
-from .tone import AGX, MEDIUM_HIGH, linear, luminance, scene_light
+from .tone import AGX, MEDIUM_HIGH, linear, luminance, scene_light, shown
 
 Floats = NDArray[np.float64]
 
@@ -68,7 +68,8 @@ def developed(picture: ReferencePicture) -> NDArray[np.uint8]:
         screen = pixels.astype(float) / 255.0
         given, meant = linear(screen), _led_back(screen)
         kept = np.percentile(luminance(given), _KEPT) / max(float(np.percentile(luminance(meant), _KEPT)), 1e-6)
-        pixels = _encoded(share * kept * meant + (1.0 - share) * given)
+        light = shown(share * kept * meant + (1.0 - share) * given, "Standard")
+        pixels = np.round(light * 255.0).astype(np.uint8)
     pixels.flags.writeable = False
     return pixels
 
@@ -78,10 +79,3 @@ def _led_back(screen: Floats) -> Floats:
     curve = np.clip(screen @ _AFTER.T, 0.0, 1.0)
     light: Floats = np.maximum(scene_light(curve, AGX, MEDIUM_HIGH) @ _BEFORE.T, 0.0)
     return light
-
-
-def _encoded(light: Floats) -> NDArray[np.uint8]:
-    value = np.clip(light, 0.0, 1.0)
-    screen = np.where(value <= 0.0031308, value * 12.92, 1.055 * value ** (1 / 2.4) - 0.055)
-    pixels: NDArray[np.uint8] = np.round(screen * 255.0).astype(np.uint8)
-    return pixels
