@@ -34,6 +34,8 @@ oak = wood("#B08A5E", figure=0.6)
 wool = fabric("#8C9096", size=0.005)
 steel = metal("#3A3B3D")
 rim = 0.012
+finish("floor", planks("#B98F63", size=(1.6, 0.16)))
+finish("walls", plaster("#EFEBE4"))
 
 proxy("armchair_1", "armchair", at=(-0.95, 0.72, 0), size=(0.78, 0.8, 0.84), yaw=40, front="backrest at the upper left",
     seen=(176, 178, 408, 432))
@@ -63,8 +65,6 @@ def pouf_1(size):
     return [part("pouf", pouf(size, "knit", at=(0, 0, size[2] / 2)), material=knit("#CFC4B2"))]
 proxy("pouf_2", "pouf", at=(1.2, -0.2, 0), size=(0.5, 0.5, 0.38), shape="round", seen=(700, 474, 824, 606), like="pouf_1")
 
-finish("floor", planks("#B98F63", size=(1.6, 0.16)))
-finish("walls", plaster("#EFEBE4"))
 lighting(style="soft daylight", sun_from="top", windows=["window_1"], lamps_on=[], warmth="neutral")
 build()
 """
