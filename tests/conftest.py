@@ -9,6 +9,10 @@ from __future__ import annotations
 import math
 import os
 
+# Before numpy is there: a process that is copied (os.fork, in the fuzz) while a thread of it computes with several threads of
+# OpenBLAS waits for ever. Two processes on two cores need no more than one each, either.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 import pytest
 from code_as_room.pipeline.artifacts.analysis import Calibration, DetectedObject, SceneAnalysis
 from code_as_room.pipeline.artifacts.camera import CameraModel

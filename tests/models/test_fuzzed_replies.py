@@ -10,6 +10,8 @@ import json
 import math
 import os
 import random
+import subprocess
+import sys
 import time
 
 import pytest
@@ -89,6 +91,35 @@ def test_what_was_read_goes_through_the_stage_that_asked(key: str) -> None:
     assert row.mutated == 25 == row.read + row.refused
     assert row.done + row.stopped == row.read - row.twice > 2
     assert row.done > 0
+
+
+COPIED = """
+import os, threading
+import numpy as np
+matrices, rounds = np.eye(6) + np.ones((1024, 6, 6)) / 10, 0
+def compute():
+    global rounds
+    while rounds < 40:
+        np.linalg.solve(matrices, np.ones((1024, 6, 1)))
+        np.linalg.inv(np.eye(300) + np.ones((300, 300)) @ np.ones((300, 300)))
+        rounds += 1
+thread = threading.Thread(target=compute, daemon=True)
+thread.start()
+while thread.is_alive():
+    child = os.fork()
+    if child == 0:
+        os._exit(0)
+    os.waitpid(child, 0)
+    thread.join(0.002)
+print(rounds)
+"""
+
+
+@FORKS
+def test_a_thread_that_computes_goes_on_when_the_process_is_copied() -> None:
+    # With several threads of OpenBLAS both wait for ever; tests/conftest.py and benchmark/__init__.py see to it.
+    said = subprocess.run([sys.executable, "-W", "ignore", "-c", COPIED], capture_output=True, text=True, timeout=300)
+    assert said.stdout.split() == ["40"], said.stderr
 
 
 @FORKS
