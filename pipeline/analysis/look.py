@@ -85,7 +85,7 @@ def _around(box: ImageBox) -> ImageBox:
     )
 
 
-def enlarged(picture: ReferencePicture, part: ImageBox) -> bytes:
+def enlarged(picture: ReferencePicture, part: ImageBox, grid: bool = True) -> bytes:
     """A part of the picture with its own 0-1000 grid, enlarged for the model when it is small."""
     with Image.open(io.BytesIO(picture.crop(part, margin=0.0))) as opened:
         image = opened.convert("RGB")
@@ -93,5 +93,6 @@ def enlarged(picture: ReferencePicture, part: ImageBox) -> bytes:
     if factor > 1.0:
         size = (max(1, round(image.width * factor)), max(1, round(image.height * factor)))
         image = image.resize(size, Image.Resampling.LANCZOS)
-    draw_grid(image)
+    if grid:
+        draw_grid(image)
     return encode_for_model(image)

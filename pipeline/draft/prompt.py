@@ -8,6 +8,8 @@ import re
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
+from ..analysis.look import OVERLAP, enlarged
+from ..artifacts.common import ImageBox
 from ..library import catalogue
 from ..picture import ReferencePicture
 from ..program.looks_reference import looks_reference
@@ -69,6 +71,21 @@ lighting(style="soft daylight", sun_from="top", windows=["window_1"], lamps_on=[
 build()
 """
 """Ends the prompt; a test reads it as a draft without a fault."""
+
+
+_PART = 1000.0 * (0.5 + OVERLAP / 2)
+QUARTERS = tuple(
+    ImageBox(x_min=x, y_min=y, x_max=x + _PART, y_max=y + _PART)
+    for y in (0.0, 1000.0 - _PART)
+    for x in (0.0, 1000.0 - _PART)
+)
+"""The picture's overlapping quarters, which are shown enlarged: top left, top right, bottom left, bottom right."""
+
+
+def pictures(picture: ReferencePicture) -> list[tuple[str, bytes]]:
+    """What is shown: names and files."""
+    parts = [(f"part {n}", enlarged(picture, part, grid=False)) for n, part in enumerate(QUARTERS, 3)]
+    return [("reference", picture.for_model()), ("grid", picture.with_grid()), *parts]
 
 
 def values(picture: ReferencePicture, settings: Mapping[str, str], width_m: float | None = None) -> dict[str, str]:

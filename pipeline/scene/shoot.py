@@ -16,6 +16,7 @@ from typing import Any, Literal
 import bmesh
 import bpy
 import numpy as np
+from mathutils import Vector
 
 from ..artifacts.camera import CameraModel
 from ..artifacts.common import ImagePoint
@@ -23,6 +24,7 @@ from ..artifacts.layout import CameraLine
 from ..errors import SceneError
 from ..program.prelude.enclosure import SECTION
 from .compat import eevee_id, quiet, set_png
+from .outside import brighten_outside
 from .read_lines import built_layout
 from .studio import stands_before
 from .tags import FIELD, ID, KIND, find_room_collection
@@ -77,6 +79,10 @@ def set_stage(scene: Any, camera: str, long_side: int, engine: Engine) -> Any:
         _settings(stage, scene, _aspect(scene, found), long_side, engine)
         view: Any = stage.view_settings
         view.exposure += _stops(scene, found)
+        if _is_inside(scene, found):
+            world = brighten_outside(stage, scene.view_settings.exposure)
+            if world is not None:
+                world[STAGE] = True
     except Exception:
         strike_stage(stage)
         raise
@@ -86,7 +92,10 @@ def set_stage(scene: Any, camera: str, long_side: int, engine: Engine) -> Any:
 def strike_stage(stage: Any) -> None:
     """Take away a scene that `set_stage` made, with the copies in it."""
     copies = [obj for obj in stage.collection.objects if obj.get(STAGE)]
+    world = stage.world
     bpy.data.scenes.remove(stage)
+    if world is not None and world.get(STAGE):
+        bpy.data.worlds.remove(world)
     for obj in copies:
         mesh = obj.data
         bpy.data.objects.remove(obj)
@@ -139,6 +148,14 @@ def _furnish(stage: Any, scene: Any, room: Any, camera: Any) -> None:
 def _cuts(camera: Any) -> bool:
     """Whether a camera's near clip cuts the walls; for others there is no section to be seen."""
     return float(camera.data.clip_start) > 0.05
+
+
+def _is_inside(scene: Any, camera: Any) -> bool:
+    """Whether a camera is in the room: below its walls' upper edges."""
+    room = find_room_collection(scene)
+    walls = [obj for obj in room.all_objects if obj.get(KIND) == "wall"] if room is not None else []
+    tops = [(obj.matrix_world @ Vector(corner)).z for obj in walls for corner in obj.bound_box]
+    return camera.data.type == "PERSP" and bool(tops) and camera.matrix_world.translation.z < max(tops)
 
 
 def _unseen(obj: Any) -> Any:

@@ -12,8 +12,19 @@ from collections.abc import Generator, Sequence
 from typing import Any
 
 from ..artifacts.analysis import Calibration, Finding, SceneAnalysis
+from ..artifacts.common import Metres3
 from ..artifacts.correction import FAULT_KINDS, CorrectionReport
-from ..artifacts.layout import CameraLine, Layout, LayoutEdit, LayoutProgram, ProxyLine, ViewLine, WindowLine
+from ..artifacts.layout import (
+    CameraLine,
+    Layout,
+    LayoutEdit,
+    LayoutProgram,
+    LightLine,
+    ProxyLine,
+    ViewLine,
+    WindowLine,
+    WorldLine,
+)
 from ..artifacts.light import Brightness, LightPlan, LightReply
 from ..artifacts.objects import RoomStyle
 from ..correction.correct import Options, correct
@@ -21,6 +32,7 @@ from ..correction.looks import pictures_of
 from ..errors import ProgramError, RoomError
 from ..layout.hand import apply_hand_edits
 from ..light.albedo import room_albedo
+from ..light.colour_match import matched_tint
 from ..light.decide import Decision, decide
 from ..light.exposure import matched
 from ..light.glowing import switched
@@ -188,10 +200,11 @@ def _finished(
         space, decision.style, shapes, decision.lamps, decision.windows, decision.sun, tint, decision.warmth
     )
     own_lights = levelled(space, [*layout.lights, *lit.lights], lit.world.strength, places, TRANSFORM, LOOK)
-    lights = [*layout.lights, *own_lights[len(layout.lights) :]]
-    exposure, brightness = matched(space, lights, lit.world.strength, places, TRANSFORM, LOOK)
+    own_lights, world = _in_colour(layout, record, own_lights[len(layout.lights) :], lit.world, places, tint)
+    lights = [*layout.lights, *own_lights]
+    exposure, brightness = matched(space, lights, world.strength, places, TRANSFORM, LOOK)
     seen = surround(view.reference) if places is not None else None
-    sky = lit.world.model_copy(update={"background": background_light(seen, decision.style, exposure, TRANSFORM, LOOK)})
+    sky = world.model_copy(update={"background": background_light(seen, decision.style, exposure, TRANSFORM, LOOK)})
     cut = cut_height(space)
     shown = ViewLine(id="view", exposure=exposure, transform=TRANSFORM, look=LOOK, ceiling=space.height, cut=cut)
     taken = {line.id for name in ("proxies", *LISTS) for line in getattr(layout, name)} - {TOP, *EYES}
@@ -206,6 +219,19 @@ def _finished(
         update={"lights": lights, "worlds": [sky], "views": [shown], "cameras": [*kept, *cameras]}
     )
     return finished, _plan(decision, lit, exposure, brightness, [c.id for c in finished.cameras], coverage)
+
+
+def _in_colour(
+    layout: Layout, record: Record, own: Sequence[LightLine], world: WorldLine, places: Places | None, tint: Metres3
+) -> tuple[list[LightLine], WorldLine]:
+    """The lights and the sky with the daylight in the colour that makes floor and walls those of the picture."""
+    if places is None:
+        return list(own), world
+    spaces = [space_of(layout, room_albedo(record, of)) for of in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))]
+    tinted = frozenset(light.id for light in own if light.color == tint)
+    better = matched_tint(spaces, [*layout.lights, *own], world, tinted, places, tint)
+    lights = [light.model_copy(update={"color": better}) if light.id in tinted else light for light in own]
+    return lights, world.model_copy(update={"color": better})
 
 
 def _plan(

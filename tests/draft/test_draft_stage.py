@@ -118,7 +118,7 @@ def test_the_prompt_is_short_enough_and_has_what_the_artist_says(picture: Refere
     view = View(picture, settings={"notes": "the pouf is red", "known_width_m": "3.2"})
     wish = next(w for w in s00_draft.STAGE.run(view) if hasattr(w, "requests"))
     prompt = make_prompt(wish.requests[0], s00_draft.ID)
-    assert len(prompt.text.encode()) < LONGEST and prompt.plain and len(prompt.images) == 2
+    assert len(prompt.text.encode()) < LONGEST and prompt.plain and len(prompt.images) == 6
     assert "the pouf is red" in prompt.text and "3.2 m wide" in prompt.text and "800 x 800" in prompt.text
 
 
