@@ -20,6 +20,8 @@ TOLERANCE = 0.02
 """Of the proxy's size: how far an object may stick out of it, or stay away from its faces."""
 TOUCH = 0.006
 """Metres between two parts that still touch."""
+BLOCK = 0.15
+"""Metres up to which a thing may be a plain box: toy blocks, dice, soap."""
 MOST_VERTICES = 40_000
 _SIDES = (("left", "right"), ("front", "back"), ("bottom", "top"))
 _ROLES = frozenset({*ROLE_COLOURS, "", "front"})
@@ -64,7 +66,7 @@ def check(shapes: Sequence[Shape], size: Sequence[float], placement: str = "floo
     count = sum(shape.vertex_count for shape in solid)
     if count > MOST_VERTICES:
         sheet.note(0.3, f"It has {count:,} vertices; {MOST_VERTICES:,} are the most. Use fewer segments and copies.")
-    if len(solid) == 1 and len(solid[0].faces) <= 6:
+    if len(solid) == 1 and len(solid[0].faces) <= 6 and max(size) > BLOCK:
         sheet.note(0.5, "It is one plain box. Model its parts.")
     found = sorted(sheet.findings, key=lambda item: -item[0])
     return Checked(tuple(sentence for _, sentence in found), min(1.5, sum(p for p, _ in found)))

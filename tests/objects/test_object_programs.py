@@ -138,3 +138,9 @@ def test_what_leans_over_would_fall() -> None:
 def test_one_box_is_no_furniture_and_nameless_parts_are_told() -> None:
     assert "plain box" in found("box((1, 1, 1), at=(0, 0, 0.5))")
     assert "no part name" in found("box((1, 1, 1), at=(0, 0, 0.5))")
+
+
+def test_a_toy_block_may_be_a_plain_box_and_a_chest_may_not() -> None:
+    for side, told in ((0.05, False), (0.6, True)):
+        shapes = made(f"part('block', box(({side}, {side}, {side}), at=(0, 0, {side / 2})), material='wood')")
+        assert ("plain box" in " ".join(check(shapes, (side, side, side)).findings)) == told  # type: ignore[arg-type]
