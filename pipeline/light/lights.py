@@ -28,7 +28,7 @@ EVEN = 3.0
 """Watts a square metre on the floor."""
 _INTO_ROOM = 0.03  # metres that a window's light stands off the wall's inner face, so that no frame swallows it
 _UNDER_CEILING = 0.015  # metres
-_MARGIN, _SHARE = 0.3, 0.12
+_MARGIN, _SHARE = 0.18, 0.07
 """Between the light under the ceiling and the walls: metres, and of a narrow room's side; nearer it burns a rim into them."""
 _REACH = 0.6  # metres from a lamp at which its irradiance is what its style says
 _GLASS = 0.92  # of a window's width and height that is not frame

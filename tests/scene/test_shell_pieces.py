@@ -86,6 +86,28 @@ def test_a_hole_takes_exactly_its_volume() -> None:
     assert volume(whole.shapes[0]) - volume(holed.shapes[0]) == pytest.approx(1.2 * 1.2 * 0.2)
 
 
+@given(st.integers(0, 12_000), st.integers(20_000, 30_000))
+def test_a_hole_up_to_the_walls_height_leaves_no_film_over_it(sill: int, height: int) -> None:
+    # 0.95 + 1.6843 is less than 2.6343 in binary numbers: from above the film that was left was black.
+    room = square_room(windows=[window(-0.5, 0.5, sill / 1e4, (height - sill) / 1e4)])
+    for wall in room.walls:
+        wall["height"] = height / 1e4
+    pieces, _ = shell_pieces(room)
+    wall = next(p for p in pieces if p.id == "s")
+    over = [v for shape in wall.shapes for v in shape.vertices if abs(v[2] - height / 1e4) < 1e-3]
+    assert all(v[2] == height / 1e4 for v in over)
+    faces = [[shape.vertices[i] for i in face] for shape in wall.shapes for face in shape.faces]
+    xs = [sorted(v[0] for v in f) for f in faces if all(v[2] == height / 1e4 for v in f)]
+    middle = wall_middle(wall)
+    assert xs and not any(low[0] < middle < low[-1] for low in xs)
+
+
+def wall_middle(wall: Any) -> float:
+    """Along the wall in its own frame, where the windows of these tests are."""
+    xs = [v[0] for shape in wall.shapes for v in shape.vertices]
+    return (min(xs) + max(xs)) / 2
+
+
 def test_walls_drawn_clockwise_are_turned_round() -> None:
     record = square_room()
     for wall in record.walls:

@@ -60,7 +60,7 @@ def _clamped(line: dict[str, Any], kind: str, run: WallRun, notes: list[str]) ->
     bottom = 0.0 if kind == "door" else float(line.get("sill", 0.0))
     top = bottom + float(line["height"])
     x = (_snapped(max(low, left), run.length), _snapped(min(high, right), run.length))
-    z = (max(bottom, 0.0), min(top, run.height))
+    z = (max(bottom, 0.0), _snapped(min(top, run.height), run.height))
     if x[1] - x[0] < SMALLEST_HOLE or z[1] - z[0] < SMALLEST_HOLE:
         notes.append(f"{name} is not within wall {run.id}, so it was left out.")
         return None
@@ -72,7 +72,7 @@ def _clamped(line: dict[str, Any], kind: str, run: WallRun, notes: list[str]) ->
 
 
 def _snapped(x: float, length: float) -> float:
-    """A position along the wall, put exactly on an end that it is within a tenth of a millimetre of."""
+    """A position on the wall, put exactly on an end that it is within a tenth of a millimetre of."""
     if abs(x) < 1e-4:
         return 0.0
     return length if abs(x - length) < 1e-4 else x
