@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..pipeline.artifacts.layout import LayoutProgram
+from ..pipeline.draft.looking import LookingClient
 from ..pipeline.draft.refine import Step, is_better
 from ..pipeline.memory import Entry, Memory
 from ..pipeline.models.base import ModelClient
@@ -45,15 +46,14 @@ class Todo:
 
 def refining(steps: Sequence[Step], stages: Sequence[Stage], real: ModelClient, drafted: ModelClient) -> list[Todo]:
     """Each step asked of the model, and after it what follows from it, answered from the draft."""
-    asked = {step.stage: step for step in steps}
-    todo: list[Todo] = []
+    looking, todo = LookingClient(drafted, real), []
     for stage in stages:
-        step = asked.get(stage.id)
-        if step is None:
-            todo.append(Todo(stage, drafted))
-            continue
         # What the steps before it have changed is brought up to date first, so that only its own objects are asked for.
-        todo += [Todo(stage, drafted), Todo(stage, real, True, False, step.only, keeps_best=True)]
+        todo.append(Todo(stage, drafted))
+        for step in steps:
+            if step.stage == stage.id:
+                client: ModelClient = looking if step.looks else real
+                todo.append(Todo(stage, client, True, False, step.only, keeps_best=True))
     return todo
 
 

@@ -22,7 +22,7 @@ from .artifacts.layout import LayoutEdit, LayoutProgram
 from .artifacts.objects import Furnishing
 from .ask import AskEvent, AskResult, perform_ask
 from .backend import HandScene, SceneBackend, Studio
-from .draft.kept import DRAFTED, is_before_draft, is_drafted
+from .draft.kept import DRAFTED, LOOKED, is_before_draft, is_drafted, is_looked_at
 from .errors import Cancelled, RoomError
 from .journal import AnswerJournal, JournalledClient, KeptAnswer
 from .memory import EntryMeta, Memory, dump_memory, now
@@ -147,6 +147,8 @@ class Run:
         client = name_of(self.client, stage.id)
         if is_drafted(client):
             settings["objects"] = DRAFTED
+        elif is_looked_at(client):
+            settings["objects"] = LOOKED
         elif settings.get("objects", "auto") not in ("programs", "library"):
             settings["objects"] = modelling_of(client)
         return View(self.picture, artifacts, settings, edits, corrections, only, recalled)

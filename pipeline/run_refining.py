@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from .artifacts.layout import LayoutProgram
+from .draft.looking import LookingClient
 from .draft.refine import Step, is_better, plan
 from .errors import Cancelled, ModelError
 from .memory import Memory, dump_memory
@@ -33,7 +34,7 @@ def refine(run: Run, real: ModelClient, say: Callable[[str], None] = lambda word
         say(f"Refining: {step.why}")
         before, held = program_of(run.memory, (step.stage,)), len(run.memory.entries)
         text = run.backend.program_text()
-        run.client = real
+        run.client = LookingClient(drafted, real) if step.looks else real
         try:
             _do(run, stages[step.stage], step)
         except Cancelled:

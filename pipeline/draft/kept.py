@@ -12,6 +12,16 @@ PREFIX = "draft:"
 DRAFTED = "drafted"
 """The setting "objects" of a stage that is answered from a draft: everything is as the draft has it."""
 
+LOOKED = "looked at"
+"""The setting "objects" of a stage in which a draft's programs are mended by eyes that see them rendered."""
+LOOK_PREFIX = "look:"
+"""What the names begin with under which memory keeps what came of that."""
+
+
+def is_looked_at(client: str) -> bool:
+    """Whether an entry of this client's name is a draft's, mended after a look."""
+    return client.startswith(LOOK_PREFIX)
+
 
 def is_drafted(client: str) -> bool:
     """Whether an entry of this client's name was derived from a draft."""

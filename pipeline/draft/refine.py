@@ -10,6 +10,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from ..artifacts.analysis import SceneAnalysis
 from ..artifacts.corrections import Corrections
 from ..artifacts.draft import DraftProgram
 from ..artifacts.hand import HandEdits
@@ -30,6 +31,8 @@ GOOD_FIT = 0.955
 """Measured score of a layout from which on a critic has little to say."""
 LARGE = 0.12
 """Square metres of an object's faces from which its own program is worth asking for."""
+SHOWN = 2500.0
+"""Of the picture's million: how large an object's box must be for a look at its render to be worth asking for."""
 MOST_OBJECTS = 20
 ODD_COLOUR = 20.0
 """CIEDE2000 by which a thing's main colour may miss the measured one before it is asked about."""
@@ -43,12 +46,14 @@ class Step:
     Attributes:
         stage: its id. only: ids of the objects that it is about, None for all. why: for the artist, a sentence.
         calls: fewest and most questions.
+        looks: the draft's programs are rendered and mended, instead of written anew.
     """
 
     stage: str
     only: frozenset[str] | None
     why: str
     calls: tuple[int, int]
+    looks: bool = False
 
 
 def plan(memory: Memory) -> list[Step]:
@@ -60,6 +65,7 @@ def plan(memory: Memory) -> list[Step]:
         return []
     steps = [
         *_layout(memory),
+        *_looks(memory),
         *_objects(memory),
         *_colours(memory),
         *_light(memory),
@@ -128,6 +134,27 @@ def _layout(memory: Memory) -> list[Step]:
     return [Step("s03_layout", None, f"The layout fits the picture to {program.score.measured:.0%}.", (1, 3))]
 
 
+def _looks(memory: Memory) -> list[Step]:
+    """Programs that nobody has seen rendered, of what takes a large part of the picture."""
+    geometry, analysis = memory.latest(Geometry), memory.latest(SceneAnalysis)
+    if geometry is None or analysis is None or not _stands(memory, Geometry.__name__, "s06_geometry"):
+        return []
+    held, edits = _held(memory), _edits(memory)
+    shown = {name_now(edits, o.id) or o.id: o.box.area for o in analysis.objects if o.box is not None}
+    unseen = {
+        made.id: shown[made.id]
+        for made in geometry.objects
+        if made.source == "program" and not made.like and made.id not in held and shown.get(made.id, 0.0) >= SHOWN
+    }
+    chosen = frozenset(sorted(unseen, key=lambda i: -unseen[i])[:MOST_OBJECTS])
+    if not chosen:
+        return []
+    calls = math.ceil(len(chosen) / _WRITTEN)
+    why = f"{_counted(len(chosen), 'was', 'were')} written without being seen: each is rendered beside the picture and mended."
+    twins = {made.id for made in geometry.objects if made.like in chosen and made.id not in held}
+    return [Step("s06_geometry", chosen | twins, why, (calls, calls), looks=True)]
+
+
 def _objects(memory: Memory) -> list[Step]:
     """Programs for what has a stock piece though it is large, or though the draft had a program that could not be used."""
     geometry, program, draft = memory.latest(Geometry), memory.latest(LayoutProgram), memory.latest(DraftProgram)
@@ -163,8 +190,8 @@ def _objects(memory: Memory) -> list[Step]:
     ]
 
 
-def _counted(number: int) -> str:
-    return "1 object has" if number == 1 else f"{number} objects have"
+def _counted(number: int, one: str = "has", more: str = "have") -> str:
+    return f"1 object {one}" if number == 1 else f"{number} objects {more}"
 
 
 def _colours(memory: Memory) -> list[Step]:

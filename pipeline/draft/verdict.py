@@ -49,11 +49,13 @@ def judge(memory: Memory) -> Verdict | None:
         return None
     counted = [s for s in draft.statements if s.kind not in ("import", "build")]
     lost = len(draft.lost) / max(1, len(counted))
-    objects = len({s.id for s in draft.statements if s.kind == "proxy" and not s.is_lost})
+    drafted = {s.id for s in draft.statements if s.kind == "proxy" and not s.is_lost}
+    objects = len(drafted)
     analysis, program = _since(memory, SceneAnalysis), _since(memory, LayoutProgram)
     missed = None
     if analysis is not None and analysis.objects:
-        missed = sum(o.source == SEEN_AGAIN for o in analysis.objects) / len(analysis.objects)
+        # A second look corrects as well; what it corrected was drafted.
+        missed = sum(o.source == SEEN_AGAIN and o.id not in drafted for o in analysis.objects) / len(analysis.objects)
     fit = program.score.measured if program is not None else None
     wrong = []
     if lost > MOST_LOST:

@@ -14,6 +14,8 @@ from .walls import shell
 
 MIN_SIDE = 0.02
 MAX_HEIGHT_SHARE = 1.0
+_TALL, _GAP = 1.8, 0.08
+"""Metres: what is higher and ends so little under the ceiling is built up to it. The gap would be black from above."""
 
 
 @dataclass(frozen=True)
@@ -77,6 +79,8 @@ def proxy_of(
         # What stands on something as high as the ceiling has no room above it: it ends at the ceiling all the same.
         base = base if base < top - 0.005 else max(0.0, top - height)
         height = min(height, top - base)
+    elif item.placement == "floor" and height > _TALL and top - (base + height) < _GAP:
+        height = top - base
     proxy = ProxyLine(
         id=item.id,
         category=item.category,

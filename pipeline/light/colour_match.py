@@ -22,6 +22,7 @@ from .estimate import irradiance
 from .exposure import GLOSS
 from .measure import LEAST_PLACES, Places
 from .space import FLOOR, Bools, Space
+from .tone import TRANSFORM, coloured_light
 
 MOST = 0.3
 """The daylight's colour beside its temperature keeps within this of white."""
@@ -37,17 +38,18 @@ def matched_tint(
     tinted: frozenset[str],
     places: Places | None,
     tint: Metres3,
+    transform: str = TRANSFORM,
 ) -> Metres3:
     """The tint, luminance 1, that the tinted lights and the sky should have instead of `tint`, which they have now.
 
     Args:
         spaces: the room, giving back red, green and blue light. tinted: ids of the lights that have it.
-        places: of the picture; `tint` is what comes back without enough of them.
+        places: of the picture; `tint` is what comes back without enough of them. transform: that the room is shown with.
     """
     seen = places.only(_in_range(places)) if places is not None else None
     if seen is None or len(seen.points) < LEAST_PLACES:
         return tint
-    wanted = np.log(seen.colours)
+    wanted = np.log(coloured_light(seen.colours, transform))
     groups = _groups(seen)
     own, rest = _arriving(spaces, lights, world, tinted, seen, tint)
     now = np.array(tint, dtype=float)

@@ -34,6 +34,7 @@ _CURVES: dict[tuple[str, str], tuple[float, ...]] = {
         0.0003, 0.0003, 0.0003, 0.0003, 0.0003, 0.0003, 0.0003, 0.0003, 0.0007, 0.0013, 0.0026, 0.0051, 0.0105, 0.0206,
         0.042, 0.0736, 0.1177, 0.1745, 0.2491, 0.328, 0.4113, 0.5021, 0.6026, 0.7167, 0.8432, 0.9391, 0.9705, 0.9823),
 }  # fmt: skip
+_GLOSS = 0.04
 _BRIGHTEST = 0.97
 """Brighter pixels are taken for this: what is burnt out could be of any brightness."""
 
@@ -59,6 +60,20 @@ def shown(light: Floats, transform: str, look: str = "") -> Floats:
         result: Floats = np.where(clipped <= 0.0031308, clipped * 12.92, 1.055 * clipped ** (1 / 2.4) - 0.055)
         return result
     result = np.interp(np.log2(value / _GREY), _FIRST + _STEP * np.arange(len(curve)), curve)
+    return result
+
+
+def coloured_light(seen: Floats, transform: str) -> Floats:
+    """Linear light (N, 3) whose colours a view transform shows as these linear ones, but for the brightest.
+
+    Khronos PBR Neutral takes away what a surface's gloss adds: up to 0.04 of every colour (its specification, 2024).
+    Of the others only the hue is kept.
+    """
+    least = np.maximum(seen.min(axis=-1, keepdims=True), 0.0)
+    if transform != NEUTRAL:
+        return seen
+    before = np.where(least < _GLOSS, np.sqrt(least * _GLOSS) * 2.0, least + _GLOSS)
+    result: Floats = seen + (before - least)
     return result
 
 

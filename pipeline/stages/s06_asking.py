@@ -10,7 +10,7 @@ from typing import Any
 from ..artifacts.analysis import Calibration, SceneAnalysis
 from ..artifacts.layout import ProxyLine
 from ..artifacts.objects import PiecesReply, ProgramReply, ProgramsReply
-from ..draft.kept import DRAFTED
+from ..draft.kept import DRAFTED, LOOKED
 from ..errors import ProgramError
 from ..library import catalogue
 from ..objects.asking import apart_from, batches, crop_of, facing_words, object_line, picture_box
@@ -92,7 +92,7 @@ def _facts(view: View, detailing: Detailing, proxy: ProxyLine) -> tuple[str, ...
 
 def write_programs(view: View, detailing: Detailing) -> Asking:
     """Programs for the larger objects in two rounds: written from the crops, then mended once after a look at renders."""
-    drafted = view.settings.get("objects") == DRAFTED
+    drafted, looked = (view.settings.get("objects") == word for word in (DRAFTED, LOOKED))
     chosen = sorted(detailing.todo, key=lambda p: -_weight(p))[: None if drafted else MOST_PROGRAMS]
     chosen.sort(key=lambda p: (category_family(p.category), p.category, p.id))
     groups = batches(chosen, BATCH)
@@ -108,7 +108,7 @@ def write_programs(view: View, detailing: Detailing) -> Asking:
         return
     drafts = {p.id: _Draft(p, replies.get(p.id)) for p in chosen}
     for draft in drafts.values():
-        draft.take(detailing, FAR if drafted else STRETCH)
+        draft.take(detailing, FAR if drafted or looked else STRETCH)
     if drafted:
         # Nobody looks at them now; that is what refining does.
         for draft in drafts.values():
@@ -129,7 +129,10 @@ def write_programs(view: View, detailing: Detailing) -> Asking:
     better = {o.id: o for reply in corrections if reply is not None for o in reply.objects}
     for draft in drafts.values():
         draft.mend(detailing, better.get(draft.proxy.id))
-        draft.keep(detailing)
+        if looked:
+            draft.keep_drafted(detailing)
+        else:
+            draft.keep(detailing)
 
 
 def _weight(proxy: ProxyLine) -> float:

@@ -11,7 +11,7 @@ from ..artifacts.analysis import Calibration, Finding, SceneAnalysis
 from ..artifacts.draft import DraftProgram
 from ..artifacts.layout import Layout, LayoutProgram, LedgerEntry
 from ..artifacts.objects import Descriptions, Geometry, ObjectProgram, OwnModelling, RoomStyle
-from ..draft.kept import DRAFTED
+from ..draft.kept import DRAFTED, LOOKED
 from ..errors import RoomError
 from ..layout.hand import apply_hand_edits, name_now
 from ..layout.pins import pinned
@@ -47,7 +47,7 @@ def run(view: View) -> StageRun:
     yield Tell("Choosing from the library", 1, 3)
     detailing.from_library()
     yield Tell("Modelling the objects", 2, 3)
-    if detailing.todo and view.settings.get("objects") in ("programs", DRAFTED):
+    if detailing.todo and view.settings.get("objects") in ("programs", DRAFTED, LOOKED):
         yield from write_programs(view, detailing)
     elif detailing.todo:
         yield from choose_pieces(view, detailing)
@@ -62,7 +62,7 @@ def run(view: View) -> StageRun:
 
 def _as_drafted(view: View, names: _Names) -> dict[str, str] | None:
     """Which things the draft makes like others, where it answers this stage; None where the measurements say it."""
-    draft = view.recall(DraftProgram) if view.settings.get("objects") == DRAFTED else None
+    draft = view.recall(DraftProgram) if view.settings.get("objects") in (DRAFTED, LOOKED) else None
     return None if draft is None else {names.now(i): names.now(first) for i, first in draft.twins.items()}
 
 

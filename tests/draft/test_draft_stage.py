@@ -192,15 +192,54 @@ def test_refining_asks_for_what_was_refused_and_for_nothing_else(picture: Refere
     run.run_all([s00_draft.STAGE, *all_stages()])
     geometry = run.memory.latest(Geometry)
     before = {o.id: o.function for o in geometry.objects} if geometry else {}
-    steps = {s.stage: s for s in plan(run.memory)}
+    steps = {s.stage: s for s in plan(run.memory) if not s.looks}
     assert steps["s06_geometry"].only == {"side_table_1"} and "could not be used" in steps["s06_geometry"].why
     model.asked.clear()
     done = refine(run, model)
     assert any(step.stage == "s06_geometry" for step in done)
-    assert [k for k in model.asked if k.startswith("06_")] == ["06_programs/1", "06_correct/1"]
+    # First the programs that were drafted are looked at, then the one that could not be used is written.
+    assert [k for k in model.asked if k.startswith("06_")] == ["06_correct/1", "06_programs/1", "06_correct/1"]
     geometry = run.memory.latest(Geometry)
     table = geometry.of("side_table_1") if geometry else None
     assert table is not None and table.source == "program"
     assert geometry is not None and {o.id: o.function for o in geometry.objects} == before
     assert all(run.status(stage) == "done" for stage in all_stages())
     assert "s06_geometry" not in {s.stage for s in plan(run.memory)}
+
+
+class Looking(Scripted):
+    """Mends the pouf when it sees it, and leaves everything else."""
+
+    seen = ""
+
+    def answer(self, prompt: Prompt, cancel: threading.Event, progress: Callable[[str], None] | None = None) -> Reply:
+        if not prompt.key.startswith("06_correct"):
+            return super().answer(prompt, cancel, progress)
+        self.asked.append(prompt.key)
+        self.seen = prompt.text
+        mended = "def pouf_1(size):\n    return [part('pouf', pouf(size, 'panels', at=(0, 0, size[2] / 2)), material='fabric #CFC4B2')]\n"
+        objects = [
+            {"id": "pouf_1", "program": mended, "keep": False},
+            {"id": "armchair_1", "program": "", "keep": True},
+        ]
+        return Reply(json.dumps({"objects": objects}), self.name)
+
+
+def test_what_was_drafted_unseen_is_looked_at_and_mended_once(picture: ReferencePicture) -> None:
+    model = Looking()
+    run = make(picture, model)
+    run.run_all([s00_draft.STAGE, *all_stages()])
+    before = run.backend.program_text()
+    [look] = [step for step in plan(run.memory) if step.looks]
+    assert look.only == {"armchair_1", "side_table_1", "pouf_1", "pouf_2"}  # not the stock piece; a twin follows
+    model.asked.clear()
+    assert look in refine(run, model)
+    assert [k for k in model.asked if k.startswith("06_")] == ["06_correct/1"]
+    assert "tufted((w - 2 * arm + 0.01, 0.16, h - 0.22)" in model.seen  # its own program was shown
+    after = run.backend.program_text()
+    assert '"panels"' in after or "'panels'" in after
+    assert before.partition("def armchair_1")[2].partition("\ndef ")[0] in after
+    geometry = run.memory.latest(Geometry)
+    assert geometry is not None and geometry.of("pouf_2").function == geometry.of("pouf_1").function
+    assert not [step for step in plan(run.memory) if step.looks]
+    assert all(run.status(stage) == "done" for stage in all_stages())

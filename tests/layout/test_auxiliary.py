@@ -8,6 +8,7 @@ import pytest
 from code_as_room.pipeline.artifacts.analysis import Calibration, DetectedObject
 from code_as_room.pipeline.artifacts.layout import ProxyLine
 from code_as_room.pipeline.layout.auxiliary import on_surface, on_wall, top_of
+from code_as_room.pipeline.layout.initial import proxy_of
 from code_as_room.pipeline.layout.walls import along, outer_walls
 
 
@@ -68,3 +69,18 @@ def test_a_screen_over_two_desks_stays_where_it_is_seen(calibration: Calibration
     assert placed[0].centre[:2] == pytest.approx((0.7, 0.33))
     away = on_surface(thing("cup", 0.74, (0.1, 0.1, 0.1), (1.5, 0.0)), {"desk": desk}, calibration)
     assert away is not None and away[0].centre[0] < 0.7
+
+
+def test_a_wardrobe_that_ends_just_under_the_ceiling_reaches_it(calibration: Calibration) -> None:
+    for height, reached in ((calibration.height - 0.05, True), (calibration.height - 0.2, False), (1.0, False)):
+        wardrobe = DetectedObject(
+            id="w",
+            category="wardrobe",
+            placement="floor",
+            box=None,
+            centre=(1.0, 1.0, height / 2),
+            size=(1.2, 0.6, height),
+        )
+        proxy, _ = proxy_of(wardrobe, calibration, 0.0)
+        assert proxy.size[2] == pytest.approx(calibration.height if reached else height)
+        assert proxy.centre[2] == pytest.approx(proxy.size[2] / 2)

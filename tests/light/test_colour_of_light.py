@@ -17,6 +17,7 @@ from code_as_room.pipeline.light.exposure import GLOSS
 from code_as_room.pipeline.light.lights import Lit, make_lights
 from code_as_room.pipeline.light.measure import Places, visible_places
 from code_as_room.pipeline.light.space import Space, space_of
+from code_as_room.pipeline.light.tone import AGX, NEUTRAL, coloured_light
 from code_as_room.pipeline.picture import ReferencePicture
 from code_as_room.pipeline.program.prelude.kelvin import light_colour
 from hypothesis import given, settings
@@ -69,7 +70,7 @@ def test_the_colour_that_made_a_picture_is_found(true: Metres3, start: Metres3, 
     spaces = spaces_of(floor, walls)
     places = shown_by(spaces, lit_with(true), visible_places(spaces[1], CAMERA, grey_picture()))
     lit = lit_with(start)
-    found = matched_tint(spaces, lit.lights, lit.world, tinted(lit, start), places, start)
+    found = matched_tint(spaces, lit.lights, lit.world, tinted(lit, start), places, start, AGX)
     assert found == pytest.approx(true, abs=0.02)
 
 
@@ -81,7 +82,7 @@ def test_colour_that_an_orange_floor_throws_is_not_counted_twice() -> None:
         spaces, lit = spaces_of(floor, grey), lit_with(white)
         places = visible_places(spaces[1], CAMERA, grey_picture())
         walls = replace(places.only(places.is_wall), colours=np.tile(grey, (int(places.is_wall.sum()), 1)))
-        found.append(matched_tint(spaces, lit.lights, lit.world, tinted(lit, white), walls, white))
+        found.append(matched_tint(spaces, lit.lights, lit.world, tinted(lit, white), walls, white, AGX))
     beside_grey, beside_orange = found
     assert beside_orange[2] > beside_grey[2] + 0.05 and beside_orange[0] < beside_grey[0] - 0.02
 
@@ -99,3 +100,11 @@ def test_a_picture_without_enough_places_changes_nothing_and_none_goes_far() -> 
     red = replace(places, colours=np.tile((0.8, 0.1, 0.01), (len(places.points), 1)))
     found = matched_tint(spaces, lit.lights, lit.world, tinted(lit, white), red, white)
     assert all(1 - MOST - 1e-6 <= v <= 1 + MOST + 1e-6 for v in found)
+
+
+@given(st.tuples(*[st.floats(0.0, 0.7)] * 3))
+def test_light_is_led_back_through_pbr_neutral(light: Metres3) -> None:
+    # The forward way as the specification has it, below its highlights.
+    least = min(light)
+    shown = np.array(light) - (least - 6.25 * least**2 if least < 0.08 else 0.04)
+    assert coloured_light(np.array([shown]), NEUTRAL)[0] == pytest.approx(light, abs=1e-6)
