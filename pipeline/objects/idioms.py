@@ -17,6 +17,8 @@ from .idiom_texts import percent
 _MOST_TURNS = 1_000_000
 """More than the steps of any program allow; so a while that would not end is stopped as one that goes on too long."""
 
+_ONCE = frozenset({"reversed", "zip", "enumerate", "range"})
+
 
 class Idioms(Calls):
     """Rewrites one program."""
@@ -130,7 +132,7 @@ class Idioms(Calls):
         return self.generic_visit(node)
 
     def visit_BinOp(self, node: ast.BinOp) -> ast.AST:
-        """i & 1, 1 << n, n >> 1, "leg_%d" % i"""
+        """i & 1, 1 << n, n >> 1, "leg_%d" % i, a + reversed(b)"""
         self.generic_visit(node)
         if isinstance(node.op, ast.BitAnd) and isinstance(node.right, ast.Constant) and node.right.value == 1:
             return ast.BinOp(node.left, ast.Mod(), ast.Constant(2))
@@ -139,6 +141,8 @@ class Idioms(Calls):
             return ast.BinOp(node.left, ast.Mult() if isinstance(node.op, ast.LShift) else ast.FloorDiv(), power)
         if isinstance(node.op, ast.Mod) and isinstance(node.left, ast.Constant) and isinstance(node.left.value, str):
             return percent(node.left.value, node.right) or node
+        if isinstance(node.op, ast.Add):
+            node.left, node.right = _as_list(node.left), _as_list(node.right)
         return node
 
     def visit_FormattedValue(self, node: ast.FormattedValue) -> ast.AST:
@@ -163,3 +167,9 @@ class Idioms(Calls):
         """{x for x in xs}: each once, in the order of their first."""
         self.generic_visit(node)
         return call_of("keys", ast.DictComp(node.elt, ast.Constant(True), node.generators))
+
+
+def _as_list(node: ast.expr) -> ast.expr:
+    """What is gone through once, as a list that something can be added to."""
+    once = isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in _ONCE
+    return call_of("list", node) if once else node

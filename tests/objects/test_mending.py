@@ -24,6 +24,7 @@ WRITTEN = {
     "x = translate(union(box((1, 1, 1)), box((2, 1, 1))), (0, 0, 1))": "[box((1, 1, 1), at=(0, 0, 1)), box((2, 1, 1), at=(0, 0, 1))]",
     "assert size\nprint(size)\nx = box((pow(2, 2), 1, 1))": "box((4, 1, 1))",
     "def leg(a: float, *, b: float = 2) -> list:\n    return box((a, b, 1))\nx = leg(1)": "box((1, 2, 1))",
+    "x = [box((v, 1, 1)) for v in [1, 2] + reversed([3, 4]) + range(5, 6)]": "[box((v, 1, 1)) for v in (1, 2, 4, 3, 5)]",
 }  # fmt: skip
 
 
