@@ -23,7 +23,7 @@ from ..pipeline.ask import AskEvent
 from ..pipeline.errors import RoomError
 from ..pipeline.program.prelude.record import Record
 from ..pipeline.scene.arrays import MeshArrays
-from ..pipeline.scene.plan import BuildPlan, plan_build
+from ..pipeline.scene.plan import BuildPlan, plan_build, plan_known, warm_up
 from ..pipeline.stages.base import Growth
 from ..pipeline.stages.wishes import Ask, Wish
 from .building import Building
@@ -62,6 +62,7 @@ class Growing:
         self._thread: threading.Thread | None = None
         self._program = self._taken = ""
         self._planned: tuple[str, list[LayoutEdit]] = "", []
+        self._known: BuildPlan | None = None
         self._ready: _Room | None = None
         self._building: tuple[Building, _Room] | None = None
         self._edits: list[LayoutEdit] = []  # in the program that stands
@@ -128,6 +129,7 @@ class Growing:
                     self._grow(self._bite(text))
                 elif (warm := getattr(self._growth, "warm", None)) is not None:
                     warm()  # while the model is still thinking
+                    warm_up(large=True)
             except RoomError as error:
                 log.info("What was heard so far makes no room: %s", error)
             except Exception:
@@ -153,7 +155,12 @@ class Growing:
             return
         self._planned = self._program, edits
         patched, _ = self._meanwhile.patched(self._program, edits)
-        plan = plan_build(patched, meshes=False)
+        record = getattr(self._growth, "record", None)
+        if record is not None and patched == self._program:
+            plan = plan_known(patched, record, self._known)
+        else:
+            plan = plan_build(patched, meshes=False)
+        self._known = plan
         plan.room.arrays = self._arrays  # each mesh is worked out once for all the rooms of this draft
         for target in plan.room.targets:
             plan.room.mesh(target)

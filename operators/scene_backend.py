@@ -24,6 +24,7 @@ from ..pipeline.errors import SceneError
 from ..pipeline.program.prelude.shape import Shape
 from ..pipeline.report_rounds import text_key
 from ..pipeline.scene.backend import BlenderScene
+from ..pipeline.scene.first_draw import prepare_drawing
 from ..pipeline.scene.plan import BuildPlan
 from ..pipeline.scene.targets import Target
 from . import round_pictures
@@ -73,6 +74,11 @@ class ResolvedScene:
         """As `BlenderScene.commit`."""
         with self._scene() as scene:
             scene.commit(plan, made)
+
+    def prepare_drawing(self, camera: CameraModel) -> bool:
+        """As `first_draw.prepare_drawing`."""
+        with self._scene() as scene:
+            return prepare_drawing(scene.scene, camera)
 
     def render(self, camera: CameraModel, long_side: int, labels: bool) -> bytes:
         """As `SceneBackend.render`."""

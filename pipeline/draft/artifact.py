@@ -3,31 +3,30 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
-
 from ..artifacts.draft import DraftProgram
 from ..errors import ReplyError
 from ..memory import Memory
 from .camera import first_camera
-from .reading import Draft, read
-from .statements import Split, split
+from .reading import Draft
+from .readings import keep, read_text
+from .statements import Split
 from .text import room_text
 
 
 def draft_program(
     text: str, written: Split, draft: Draft, amended: list[str], at_first: int, image_size: tuple[int, int]
 ) -> DraftProgram:
-    """What the stage writes.
+    """What the stage writes; the draft, read to its end, is kept for the stages after it.
 
     Raises:
         ReplyError: no room can be made of the draft.
     """
-    draft.close()
     camera = first_camera(draft.room, image_size) if draft.room is not None else None
     room = room_text(draft, camera)
     if not room:
         raise ReplyError("No room can be made of this draft.", "Try again, or go on stage by stage.")
-    twins = {t.id: first for t in draft.things.values() if (first := draft.first_of(t)) != t.id}
+    keep(text, amended, draft, written.style)
+    twins = {name: first for name, first in draft.firsts().items() if first != name}
     return DraftProgram(
         text=text,
         room_text=room,
@@ -47,12 +46,4 @@ def latest_draft(memory: Memory) -> DraftProgram | None:
 
 def read_again(program: DraftProgram) -> tuple[Draft, str]:
     """A kept draft, read as it was, and the room's style in its words."""
-    return _read(program.text, tuple(program.amended))
-
-
-@lru_cache(maxsize=2)
-def _read(text: str, amended: tuple[str, ...]) -> tuple[Draft, str]:
-    """Reading a draft evaluates all of its programs; every question of every stage needs it."""
-    written = split(text)
-    again = [statement for one in amended for statement in split(one).statements]
-    return read(written.statements, again), written.style
+    return read_text(program.text, program.amended)

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 from ..analysis.calibrate import calibrate
 from ..analysis.clean import clean_analysis
 from ..artifacts.layout import CameraLine
@@ -12,6 +14,7 @@ from ..layout.initial import camera_line
 from .things import RoomSaid
 
 
+@lru_cache(maxsize=4)
 def first_camera(room: RoomSaid, image_size: tuple[int, int]) -> CameraLine | None:
     """The line of the reference camera, None where the room's corners do not tell it. The stages fit a better one later."""
     if len(room.seen) < 3:

@@ -19,10 +19,12 @@ from ..artifacts.replies import (
     SizeReply,
 )
 from .camera import points
+from .layout import room_of
 from .reading import Draft
-from .text import room_of
 from .things import Box, Fixed, RoomSaid, Thing
 
+HIGH_DOOR, LEAF = 2.45, 2.05
+"""Metres: what no door's leaf is higher than, and what it is then taken for."""
 _LEAST = 4
 """Things with boxes from which the floor's corners in the picture are worked out where the draft does not say them."""
 
@@ -66,12 +68,14 @@ def _box(seen: Box | None) -> BoxReply:
 
 
 def _fixed(item: Fixed, middle: tuple[float, float]) -> ArchitectureReply:
+    # A door as high as a room is its hole, cut open to the wall's top; what is above the leaf is found in the picture.
+    height = min(item.height, LEAF) if item.kind == "door" and item.height > HIGH_DOOR else item.height
     return ArchitectureReply(
         id=item.id,
         kind=item.kind,
         start=_metres(item.start, middle),
         end=_metres(item.end, middle),
-        height_m=item.height,
+        height_m=height,
         sill_m=item.sill,
         thickness_m=item.thickness,
         wall=item.wall,

@@ -80,24 +80,21 @@ def with_roles(source: str, palette: Palette, own: frozenset[str]) -> tuple[str,
     Args:
         own: names of the draft's defs and numbers, which mean themselves.
     """
-    tree = ast.parse(source)
-    bound = {n.id for n in ast.walk(tree) if isinstance(n, ast.Name) and not isinstance(n.ctx, ast.Load)}
-    bound |= {a.arg for a in ast.walk(tree) if isinstance(a, ast.arg)}
+    nodes = list(ast.walk(ast.parse(source)))
+    bound = {n.id for n in nodes if isinstance(n, ast.Name) and not isinstance(n.ctx, ast.Load)}
+    bound |= {a.arg for a in nodes if isinstance(a, ast.arg)}
+    families, named = FAMILIES - own - bound, palette.named.keys() - bound - own
     spots = Spots(source)
     notes: list[str] = []
     inside: set[int] = set()
-    for node in ast.walk(tree):
+    for node in nodes:
         if id(node) in inside:
             inside |= {id(child) for child in ast.iter_child_nodes(node)}
             continue
-        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in FAMILIES - own - bound:
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in families:
             spots.replace(node, _material(spots.text_of(node), node, spots, palette, notes))
             inside |= {id(child) for child in ast.iter_child_nodes(node)}
-        elif (
-            isinstance(node, ast.Name)
-            and isinstance(node.ctx, ast.Load)
-            and node.id in palette.named.keys() - bound - own
-        ):
+        elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load) and node.id in named:
             try:
                 spots.replace(node, f'"{palette.material(node.id)}"')
             except ProgramError as error:

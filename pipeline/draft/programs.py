@@ -211,9 +211,10 @@ def _renamed(source: str, names: Mapping[str, str], uses: Mapping[str, str]) -> 
         if node.name in RESERVED:
             # def rug(size) that calls rug(size) means the language's.
             local.add(node.name)
-        local |= {a.arg for n in ast.walk(node) if isinstance(n, ast.arguments) for a in [*n.args, *n.kwonlyargs]}
-        local |= {n.id for n in ast.walk(node) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
-        local |= {n.name for n in ast.walk(node) if isinstance(n, ast.FunctionDef) and n is not node}
+        inner = list(ast.walk(node))
+        local |= {a.arg for n in inner if isinstance(n, ast.arguments) for a in [*n.args, *n.kwonlyargs]}
+        local |= {n.id for n in inner if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
+        local |= {n.name for n in inner if isinstance(n, ast.FunctionDef) and n is not node}
         new = names.get(node.name)
         if new is not None:
             row = source.split("\n")[node.lineno - 1]

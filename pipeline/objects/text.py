@@ -11,6 +11,7 @@ import ast
 import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 from ..artifacts.layout import Layout
 from ..library import catalogue
@@ -102,21 +103,27 @@ def _read_furnish(found: Modelling, call: ast.Call, source: str) -> None:
         found.functions[identifier] = given.id
 
 
-def compose(layout: Layout, defs: Mapping[str, str], furnish: Mapping[str, str], others: Iterable[str] = ()) -> str:
+def compose(
+    layout: Layout,
+    defs: Mapping[str, str],
+    furnish: Mapping[str, str],
+    others: Iterable[str] = (),
+    printed: str = "",
+) -> str:
     """A room text: the layout's lines, the library's defs, the objects' own, and what each object is furnished with.
 
     Args:
         defs: text of the objects' own defs by name. What they use of the library is added.
         furnish: object id -> its furnish statement. Ids that are not in the layout are left out.
-        others: statements that the defs need.
+        others: statements that the defs need. printed: the layout as `print_layout` prints it, where that is at hand.
     """
+    printed = printed or print_layout(layout)
     present = {p.id for p in layout.proxies}
     lines = [statement for i, statement in furnish.items() if i in present]
     if not lines and not defs:
-        return print_layout(layout)
-    library = catalogue.definitions()
-    used = {n for text in defs.values() for n in re.findall(r"[A-Za-z_]\w*", text) if n in library and n not in defs}
-    parts = [print_layout(layout).removesuffix(END).rstrip()]
+        return printed
+    used = set().union(*map(library_names, defs.values())) - defs.keys()
+    parts = [printed.removesuffix(END).rstrip()]
     if used:
         parts.append("# Furniture library\n" + _without(catalogue.source(sorted(used)), defs).strip())
     others = without_finishes_of_nothing(others, present_names(layout))
@@ -126,6 +133,12 @@ def compose(layout: Layout, defs: Mapping[str, str], furnish: Mapping[str, str],
     parts += [text.strip() for text in defs.values()]
     parts.append("\n".join(lines))
     return "\n\n\n".join(part for part in parts if part) + "\n\n" + END
+
+
+@lru_cache(maxsize=4096)
+def library_names(text: str) -> frozenset[str]:
+    """The names in a def that are the library's: most defs of a room are the same from one version to the next."""
+    return frozenset(re.findall(r"[A-Za-z_]\w*", text)) & catalogue.definitions().keys()
 
 
 def _without(source: str, names: Collection[str]) -> str:

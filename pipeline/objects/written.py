@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import ast
+import itertools
 import re
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
@@ -21,6 +22,7 @@ from ..program.prelude.palette import ROLE_COLOURS, split_role
 from ..program.prelude.shape import Shape
 from ..program.reuse import remember
 from .checks import Checked, check, extent
+from .text import library_names
 
 _FENCE = re.compile(r"```(?:python)?\s*\n(.*?)```", re.DOTALL)
 SHARED = "shared_"
@@ -72,9 +74,9 @@ def take_program(
     library = catalogue.source(_library_names(source))
     size = tuple(float(v) for v in proxy.size)
     head = f"{library}\n\n" if library else ""
-    call = f"\n\n\ndef made_for_room():\n    return {main}({size!r})\n"
     try:
-        shapes = evaluate_object(head + source + call, "made_for_room")
+        tree = parse(head + source, DEFAULT_LIMITS)
+        shapes = evaluate_object(head + source, main, args=(size,), tree=tree)
     except ProgramError as error:
         error.line = max(0, error.line - head.count("\n")) if error.line else 0
         raise
@@ -86,11 +88,12 @@ def take_program(
     if fixes is None:
         raise ProgramError(f"its shapes are far from the size {_sizes(size)}: {'; '.join(checked.findings[:3])}")
     if not fixes and not _roles(shapes):
-        remember(head + source, name, size, shapes)
+        remember(head + source, name, size, shapes, tree)
         return Written(name, source, tuple(shapes), checked)
-    inner = f"{name}_shapes"
-    if main != name or inner in taken:
+    if main != name:
         raise ProgramError("its names cannot be used")
+    # What it replaces may have been fitted, too.
+    inner = next(n for k in itertools.count(1) if (n := f"{name}_shapes{k if k > 1 else ''}") not in taken)
     source = _renamed(source, {name: inner})
     source += f"\n\n\ndef {name}(size):\n    return {_wrapped(f'{inner}(size)', fixes, _roles(shapes))}"
     # What was made is fitted as the wrapped def will do it: making it again would take as long as the first time.
@@ -203,6 +206,8 @@ def _renamed(source: str, names: dict[str, str]) -> str:
 
 def _library_names(source: str) -> list[str]:
     """The library's defs that a program uses and does not define itself."""
+    if not library_names(source):
+        return []
     tree = parse(source, DEFAULT_LIMITS)
     own = {node.name for node in tree.body if isinstance(node, ast.FunctionDef)}
     used = {n.id for n in ast.walk(tree) if isinstance(n, ast.Name)}

@@ -59,9 +59,13 @@ _BUILD = '''def build():
 '''
 
 
-def prelude_text() -> str:
-    """The whole prelude as the text of one module: all that a room can be written with."""
-    return _prelude(_PUBLIC, True)
+def prelude_text(docs: bool = True) -> str:
+    """The whole prelude as the text of one module: all that a room can be written with.
+
+    Args:
+        docs: with the docstrings of its own functions, which large rooms do without.
+    """
+    return _prelude(_PUBLIC, docs)
 
 
 @functools.lru_cache(maxsize=3)

@@ -9,6 +9,7 @@ threads and inside each other.
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
 from dataclasses import fields
@@ -74,13 +75,18 @@ def _evaluated(text: str, limits: Limits) -> Record:
     return recorder.record
 
 
-def evaluate_object(text: str, name: str, limits: Limits = DEFAULT_LIMITS, args: Sequence[Any] = ()) -> list[Shape]:
+def evaluate_object(
+    text: str, name: str, limits: Limits = DEFAULT_LIMITS, args: Sequence[Any] = (), tree: ast.Module | None = None
+) -> list[Shape]:
     """The shapes that the def `name` of an object program returns. The text has defs, but no lines of the room.
+
+    Args:
+        tree: what `parse` made of the text, where that is at hand.
 
     Raises ProgramError as `evaluate` does, and when the def is missing or returns something else than shapes.
     """
     evaluation = Evaluation(room_vocabulary(), None, limits)
-    evaluation.feed(text)
+    evaluation.feed(text, tree=tree)
     result = evaluation.call(name, args)
     try:
         if result.__class__ in CONTAINERS:
@@ -124,16 +130,17 @@ class Evaluation:
         self._module = Scope(None)
         self._top: Frame = []
 
-    def feed(self, text: str, complete: bool = True) -> None:
+    def feed(self, text: str, complete: bool = True, tree: ast.Module | None = None) -> None:
         """Evaluate a text: first all of it is checked, then all of it runs.
 
         Args:
             text: whole statements; line numbers count from its beginning.
             complete: whether no other piece follows. If one does, names that are not known yet may be used in defs.
+            tree: what `parse` made of the text, where that is at hand.
         """
         try:
             with uncollected():
-                run = self._compile(text, complete)
+                run = self._compile(text, complete, tree)
         except (RecursionError, MemoryError):
             raise ProgramError(TOO_DEEP, 0, "Give parts of it a name in statements before.") from None
         self._run(lambda: run(self._top))
@@ -161,8 +168,8 @@ class Evaluation:
             except Exception as error:
                 raise located(error, 0) from None
 
-    def _compile(self, text: str, complete: bool) -> Callable[[Frame], Any]:
-        tree = parse(text, self.limits)
+    def _compile(self, text: str, complete: bool, tree: ast.Module | None) -> Callable[[Frame], Any]:
+        tree = tree or parse(text, self.limits)
         refuse(Checker(self.limits).run(tree))
         names = Binder(self._module).run(tree)
         refuse(check_lines(tree, names, self._known, self._lines_allowed) + check_names(names, self._known, complete))

@@ -22,6 +22,9 @@ TITLE = "# Materials"
 """The comment above what `with_materials` writes."""
 
 
+_END = "build()\n"
+
+
 @dataclass
 class Materials:
     """What a room text says of materials.
@@ -130,6 +133,12 @@ def with_materials(text: str, materials: Materials) -> str:
     result = "\n\n".join(part.rstrip("\n") for part in (kept, section) if part) + "\n\n" + "".join(lines[end:])
     parse(result, FINISHED_ROOM_LIMITS)
     return result
+
+
+def with_first_materials(text: str, materials: Materials) -> str:
+    """As `with_materials`, for a text that says nothing of materials and ends in `build()`: nothing of it is read."""
+    kept, section = text.removesuffix(_END).rstrip(), print_materials(materials).rstrip("\n")
+    return "\n\n".join(part for part in (kept, section, _END) if part)
 
 
 def present_names(layout: Layout) -> set[str]:

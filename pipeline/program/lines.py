@@ -8,6 +8,7 @@ to `FINE_DECIMALS`; `canonical` does the same to typed lines, so that `parse_lay
 from __future__ import annotations
 
 import ast
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -109,8 +110,13 @@ def canonical(layout: Layout) -> Layout:
     return result
 
 
-def print_layout(layout: Layout) -> str:
-    """The room text of a layout: sections with comments, one statement a line, `build()` at the end."""
+def print_layout(layout: Layout, printed: Callable[[Line], str] | None = None) -> str:
+    """The room text of a layout: sections with comments, one statement a line, `build()` at the end.
+
+    Args:
+        printed: prints a line, or knows how it was printed before; `print_line` without it.
+    """
+    printed = printed or print_line
     majors = [proxy for proxy in layout.proxies if proxy.salience == "major"]
     minors = [proxy for proxy in layout.proxies if proxy.salience != "major"]
     sections: list[tuple[str, list[Line]]] = [
@@ -122,7 +128,7 @@ def print_layout(layout: Layout) -> str:
         ("Cameras", [*layout.cameras, *layout.views]),
     ]
     blocks = [
-        "\n".join([f"# {title}", *(print_line(line) for line in lines)]) + "\n" for title, lines in sections if lines
+        "\n".join([f"# {title}", *(printed(line) for line in lines)]) + "\n" for title, lines in sections if lines
     ]
     return "\n".join([*blocks, "build()\n"])
 

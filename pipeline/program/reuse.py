@@ -64,10 +64,14 @@ class ShapeStore:
 STORE = ShapeStore()
 
 
-def remember(text: str, name: str, size: Iterable[float], shapes: list[Shape]) -> None:
-    """Keep what a def of a text with defs was seen to make of a size, so that a room with the same defs need not make it."""
+def remember(text: str, name: str, size: Iterable[float], shapes: list[Shape], tree: ast.Module | None = None) -> None:
+    """Keep what a def of a text with defs was seen to make of a size, so that a room with the same defs need not make it.
+
+    Args:
+        tree: what `parse` made of the text, where that is at hand.
+    """
     try:
-        module = _Module.of(parse(text, FINISHED_ROOM_LIMITS), text)
+        module = _Module.of(tree or parse(text, FINISHED_ROOM_LIMITS), text)
     except ProgramError:
         return
     digest = module.digest(name)

@@ -38,9 +38,9 @@ def brighten_outside(stage: Any, exposure: float) -> Any | None:
         return None
     world = stage.world.copy()
     sky = scene_light(np.array([_SKY]), transform, look) * np.array(_HUE) / 2.0**view.exposure
-    node = _seen(world)
-    former = np.array(node.inputs["Color"].default_value[:3])
-    node.inputs["Color"].default_value = (*(float(v) for v in np.maximum(sky, former)), 1.0)
+    own: Any = _seen(world)
+    former = np.array(own.inputs["Color"].default_value[:3])
+    own.inputs["Color"].default_value = (*(float(v) for v in np.maximum(sky, former)), 1.0)
     stage.world = world
     return world
 

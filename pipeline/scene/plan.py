@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
-import functools
+import threading
+from collections import OrderedDict
 from dataclasses import dataclass
 
 from ..program.assemble import assemble, prelude_text
 from ..program.evaluate import evaluate
 from ..program.limits import FINISHED_ROOM_LIMITS
 from ..program.lines import parse_layout
+from ..program.prelude.record import Record
 from .targets import Plan, plan_record
 from .texts import check_lines
 
@@ -26,6 +28,24 @@ class BuildPlan:
     text: str
     full_text: str
     room: Plan
+
+
+def plan_known(text: str, record: Record, former: BuildPlan | None = None) -> BuildPlan:
+    """As `plan_build` without meshes, for a text whose record is known: it is not evaluated.
+
+    Args:
+        former: the plan of a room that is much the same.
+
+    Raises:
+        SceneError: a line of it is too long for Blender.
+    """
+    room = plan_record(record, former.room if former is not None else None)
+    full = assemble(text)
+    groups = (record.walls, record.doors, record.windows, record.openings, record.proxies, record.lights)
+    lines = (line["id"] for group in (*groups, record.worlds, record.views, record.cameras) for line in group)
+    _IDS.keep(text, frozenset(lines))
+    check_lines("room.py", full)
+    return BuildPlan(text, full, room)
 
 
 def plan_build(text: str, meshes: bool = True) -> BuildPlan:
@@ -48,14 +68,42 @@ def plan_build(text: str, meshes: bool = True) -> BuildPlan:
     return BuildPlan(text, full, room)
 
 
-@functools.lru_cache(maxsize=8)
+class _Ids:
+    """The ids of all layout lines by the program's text; of the last few texts."""
+
+    def __init__(self, most: int) -> None:
+        self._most, self._lock = most, threading.Lock()
+        self._held: OrderedDict[str, frozenset[str]] = OrderedDict()
+
+    def find(self, text: str) -> frozenset[str] | None:
+        """Those of a text that was kept."""
+        with self._lock:
+            if text in self._held:
+                self._held.move_to_end(text)
+            return self._held.get(text)
+
+    def keep(self, text: str, ids: frozenset[str]) -> None:
+        """Remember those of a text."""
+        with self._lock:
+            self._held[text] = ids
+            while len(self._held) > self._most:
+                self._held.popitem(last=False)
+
+
+_IDS = _Ids(8)
+
+
 def line_ids(text: str) -> frozenset[str]:
     """The ids of all layout lines of a program. Raises ProgramError as `parse_layout`."""
-    layout = parse_layout(text)
-    lines = (layout.walls, layout.doors, layout.windows, layout.openings, layout.proxies, layout.lights)
-    return frozenset(line.id for group in (*lines, layout.worlds, layout.views, layout.cameras) for line in group)
+    found = _IDS.find(text)
+    if found is None:
+        layout = parse_layout(text)
+        lines = (layout.walls, layout.doors, layout.windows, layout.openings, layout.proxies, layout.lights)
+        found = frozenset(line.id for group in (*lines, layout.worlds, layout.views, layout.cameras) for line in group)
+        _IDS.keep(text, found)
+    return found
 
 
-def warm_up() -> None:
-    """Join the prelude's text: once a session, half a second."""
-    prelude_text()
+def warm_up(large: bool = False) -> None:
+    """Join the prelude's text, for large rooms or for others: once a session, half a second."""
+    prelude_text(docs=not large)

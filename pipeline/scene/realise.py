@@ -92,17 +92,18 @@ def realise_plan(plan: Plan, collection_name: str, scene: Any, made: dict[tuple[
     for obj in gone:
         if AWAY in obj:
             set_aside(room, obj)
-        else:
-            _remove(obj)
+    _remove([obj for obj in gone if AWAY not in obj])
     aside = away(room)
     done: dict[str, Any] = {}
+    spent: list[tuple[int, Any]] = []
     for target in plan.targets:
         obj, parent = existing.get(target.key, [None])[0], done.get(target.parent or "")
         if obj is None and target.key in aside:
             obj = bring_back(aside[target.key], parent, room, collections[target.role])
-        obj = _realise(target, plan, obj, parent, collections[target.role], made)
+        obj = _realise(target, plan, obj, parent, collections[target.role], made, spent)
         if not target.key[1]:
             done[target.key[0]] = obj
+    _take_away(spent)
     remember_record(room, plan.record, set(done))
     light_scene(scene, room, plan.record)
     if scene.camera is None:
@@ -142,7 +143,13 @@ def new_mesh(target: Target, plan: Plan) -> Any:
 
 
 def _realise(
-    target: Target, plan: Plan, obj: Any, parent: Any, collection: Any, made: dict[tuple[str, str], Any]
+    target: Target,
+    plan: Plan,
+    obj: Any,
+    parent: Any,
+    collection: Any,
+    made: dict[tuple[str, str], Any],
+    spent: list[tuple[int, Any]],
 ) -> Any:
     """Make or update one object; returns it."""
     digest, shapes = plan.digests[target.key]
@@ -158,7 +165,7 @@ def _realise(
         (write_light if target.kind == "light" else write_camera)(obj.data, target.line)
         matrix = target.matrix if matrix is None else matrix
     elif matrix is None:
-        matrix = _update_mesh(target, plan, obj, shapes, made, collection)
+        matrix = _update_mesh(target, plan, obj, shapes, made, collection, spent)
     elif target.kind == "proxy" and obj.type == "MESH" and not is_same:
         dress_own(obj, target)
     place(obj, matrix, kept_parent(obj, parent), _CAMERA_TOLERANCE if target.kind == "camera" else EXACT)
@@ -220,11 +227,20 @@ def _lacks(obj: Any, target: Target, digest: str) -> bool:
 
 
 def _update_mesh(
-    target: Target, plan: Plan, obj: Any, digest: str, made: dict[tuple[str, str], Any], collection: Any
+    target: Target,
+    plan: Plan,
+    obj: Any,
+    digest: str,
+    made: dict[tuple[str, str], Any],
+    collection: Any,
+    spent: list[tuple[int, Any]],
 ) -> Any:
     """Bring the object's mesh up to date; returns the matrix that the object should have with it.
 
     A mesh that the artist made is kept. Its object is fitted to the line's box when it does not fill it.
+
+    Args:
+        spent: takes the `session_uid` of each mesh that was exchanged, with the one that stands in its place.
     """
     if obj.type != "MESH":
         return world_matrix(obj)
@@ -233,6 +249,7 @@ def _update_mesh(
         return target.matrix
     if _lacks(obj, target, digest):
         if target.key in made:
+            spent.append((obj.data.session_uid, made[target.key]))
             _exchange(obj, made.pop(target.key))
             return target.matrix
         shared = shared_mesh(target, digest, collection, mesh)
@@ -253,13 +270,20 @@ def _update_mesh(
 
 
 def _exchange(obj: Any, mesh: Any) -> None:
-    """Give the object a mesh that was made beforehand; the former one goes, and its name stays."""
-    former = obj.data
-    put_artists_slots(mesh, artists_slots(former))
+    """Give the object a mesh that was made beforehand."""
+    put_artists_slots(mesh, artists_slots(obj.data))
     obj.data = mesh
-    if former.users == 0:
-        name = former.name
-        bpy.data.meshes.remove(former)
+
+
+def _take_away(spent: list[tuple[int, Any]]) -> None:
+    """Remove meshes that nobody uses any more; their names stay. At once, since Blender looks through all it has each time."""
+    if not spent:
+        return
+    meshes = {mesh.session_uid: mesh for mesh in bpy.data.meshes if mesh.users == 0}
+    unused = {meshes[uid].name: (meshes[uid], mesh) for uid, mesh in spent if uid in meshes}
+    if unused:
+        bpy.data.batch_remove([former for former, _ in unused.values()])
+    for name, (_, mesh) in unused.items():
         mesh.name = name
 
 
@@ -274,13 +298,15 @@ def place(obj: Any, matrix: Any, parent: Any, tolerance: float) -> None:
     obj.matrix_basis = [[float(v) for v in row] for row in np.asarray(matrix).T]  # Blender takes columns
 
 
-def _remove(obj: Any) -> None:
-    """Delete an object of ours; whatever was parented to it stays where it is."""
-    free_children(obj)
-    data = obj.data
-    bpy.data.objects.remove(obj, do_unlink=True)
-    if data is not None and data.users == 0:
-        bpy.data.batch_remove([data])
+def _remove(objects: list[Any]) -> None:
+    """Delete objects of ours; whatever was parented to them stays where it is."""
+    for obj in objects:
+        free_children(obj)
+    data = {obj.data for obj in objects if obj.data is not None}
+    if objects:
+        bpy.data.batch_remove(objects)
+    if unused := [block for block in data if block.users == 0]:
+        bpy.data.batch_remove(unused)
 
 
 def _restore_refused_names(existing: dict[tuple[str, str], list[Any]], wanted: set[tuple[str, str]]) -> None:

@@ -48,8 +48,13 @@ def open_view() -> tuple[Any, Any] | None:
     return None
 
 
-def draw_in_view(view: tuple[Any, Any], stage: Any, camera: CameraModel, fine: bool) -> Image.Image:
+def draw_in_view(
+    view: tuple[Any, Any], stage: Any, camera: CameraModel, fine: bool, managed: bool = True
+) -> Image.Image:
     """A studio's scene through a camera, in the studio's resolution, drawn in an open 3D view.
+
+    Args:
+        managed: in the screen's colours.
 
     Raises:
         RuntimeError: the graphics driver could not do it.
@@ -67,7 +72,7 @@ def draw_in_view(view: tuple[Any, Any], stage: Any, camera: CameraModel, fine: b
     offscreen = card.types.GPUOffScreen(width, height)
     try:
         with _neutral(space, region.data):
-            offscreen.draw_view3d(stage, layer, space, region, *matrices, do_color_management=True)
+            offscreen.draw_view3d(stage, layer, space, region, *matrices, do_color_management=managed)
         with offscreen.bind():
             buffer = card.state.active_framebuffer_get().read_color(0, 0, width, height, 4, 0, "UBYTE")
     finally:

@@ -106,7 +106,11 @@ class View:
 
 
 class Growth(Protocol):
-    """Makes rooms of an answer that is still being written."""
+    """Makes rooms of an answer that is still being written.
+
+    One may also have `warm()`, which is called before there is anything to hear; `latest`, a sentence on what stands; and
+    `record`, what the text that it gave last means, so that nobody evaluates it.
+    """
 
     def hear(self, text_so_far: str) -> str | None:
         """A whole valid room program when a new statement became complete, else None; after another try of the question

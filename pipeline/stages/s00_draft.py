@@ -10,8 +10,9 @@ from ..artifacts.draft import DraftProgram
 from ..artifacts.replies import PlainReply
 from ..draft.artifact import draft_program
 from ..draft.growing import DraftGrowth
-from ..draft.prompt import again_values, values
+from ..draft.prompt import again_values, pictures, values
 from ..draft.reading import Draft
+from ..draft.readings import Reading, taken_over
 from ..draft.statements import Split, split
 from ..errors import ReplyError
 from .base import Growth, Stage, View
@@ -29,7 +30,8 @@ def run(view: View) -> StageRun:
     text = reply.text
     yield Tell("Reading the draft", 2, 3)
     written = split(text)
-    draft = read_usable(written)
+    reading = read_usable(written)
+    draft = reading.draft
     refused = draft.refused_programs()[:MOST_AGAIN]
     at_first = sum(s.is_lost for s in draft.statements)
     amended: list[str] = []
@@ -37,30 +39,29 @@ def run(view: View) -> StageRun:
         requests = tuple(_again(view, written, draft, *one) for one in refused)
         answers = yield Ask(requests, optional=True)
         amended = [a.text for a in answers if a is not None]
-    for again in amended:
-        draft.amend(split(again).statements)
+    reading.amend(amended)
     yield Tell("Building the room", 3, 3)
-    made = draft_program(text, written, draft, amended, at_first, (view.reference.width, view.reference.height))
+    with reading.lock:  # its growing room may still look at it
+        made = draft_program(text, written, draft, amended, at_first, (view.reference.width, view.reference.height))
     yield Build(made.room_text)
     return [made]
 
 
-def read_usable(written: Split) -> Draft:
-    """The draft of an answer.
+def read_usable(written: Split) -> Reading:
+    """The draft of an answer, as far as it was read while it grew, and the rest of it.
 
     Raises:
         ReplyError: there is nothing in it of which a room could be made.
     """
-    draft = Draft()
-    for statement in written.statements:
-        draft.take(statement)
-    if draft.room is None and not draft.things:
+    reading = taken_over(written.statements)
+    reading.go_on(written.statements)
+    if reading.draft.room is None and not reading.draft.things:
         raise ReplyError(
             "The answer holds no room program.",
             "Try again, or go on stage by stage.",
             ("There was neither a room line nor a proxy line in the answer.",),
         )
-    return draft
+    return reading
 
 
 def _request(view: View) -> Request:
@@ -70,7 +71,7 @@ def _request(view: View) -> Request:
         prompt="draft",
         reply=PlainReply,
         values=values(picture, view.settings, view.number("known_width_m")),
-        images=(Picture("reference", picture.for_model()), Picture("grid", picture.with_grid())),
+        images=tuple(Picture(name, file) for name, file in pictures(picture)),
     )
 
 

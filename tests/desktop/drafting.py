@@ -39,6 +39,7 @@ def main() -> int:
     parser.add_argument("--picture", type=Path, default=ROOT / "samples" / "bedroom" / "picture.png")
     parser.add_argument("--more", type=Path, help="folder of recorded answers to other questions")
     parser.add_argument("--pace", type=float, default=2500.0)
+    parser.add_argument("--profile", action="store_true", help="profile the longest tick of the job too")
     parser.add_argument("--shots", type=Path, default=ROOT / "out" / "drafting")
     options = parser.parse_args()
     shots = options.shots.resolve()
@@ -55,6 +56,7 @@ def main() -> int:
             "CODE_AS_ROOM_SHOTS": str(shots),
             "CODE_AS_ROOM_PICTURE": str(options.picture.resolve()),
             "CODE_AS_ROOM_REPLIES": str(replies),
+            "CODE_AS_ROOM_PROFILE": "1" if options.profile else "",
         }
         start(options.blender, Path(__file__).parent / "inside" / "drafted.py", profile, environment)
     finally:
@@ -63,7 +65,9 @@ def main() -> int:
         print("Blender left no results.", file=sys.stderr)
         return 1
     found = json.loads(results.read_text(encoding="utf-8"))
+    profile_text = found.pop("profile", "")
     print(json.dumps(found, indent=1))
+    print(profile_text)
     return 0 if all(found["checks"].values()) and not found["error"] else 1
 
 

@@ -144,3 +144,10 @@ def test_a_toy_block_may_be_a_plain_box_and_a_chest_may_not() -> None:
     for side, told in ((0.05, False), (0.6, True)):
         shapes = made(f"part('block', box(({side}, {side}, {side}), at=(0, 0, {side / 2})), material='wood')")
         assert ("plain box" in " ".join(check(shapes, (side, side, side)).findings)) == told  # type: ignore[arg-type]
+
+
+def test_a_program_that_has_to_be_fitted_may_replace_one_that_had_to_be() -> None:
+    small = GOOD.replace("return [", "return scale([").rstrip() + ", 0.9)\n"
+    made = take_program(small, TABLE, "table_1", taken=("table_1_shapes", "leg"))
+    assert "def table_1_shapes2(size)" in made.code
+    assert np.allclose(extent(made.shapes), (-0.6, -0.3, 0, 0.6, 0.3, 0.75), atol=1e-3)

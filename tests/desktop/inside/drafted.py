@@ -3,8 +3,12 @@
 
 from __future__ import annotations
 
+import cProfile
+import io
 import json
 import math
+import os
+import pstats
 import sys
 import time
 import traceback
@@ -41,6 +45,8 @@ SHOWN = 7
 """Screenshots while it grows."""
 late: list[float] = []
 ticks: list[tuple[float, float, str]] = []
+PROFILING = bool(os.environ.get("CODE_AS_ROOM_PROFILE"))
+profiled = [0.0]
 
 
 def watch() -> None:
@@ -68,13 +74,24 @@ def watch() -> None:
         return stands
 
     def ticked(self: Any, budget: float) -> bool:
+        profile = cProfile.Profile() if PROFILING else None
         start, cpu, doing = time.perf_counter(), time.thread_time(), f"{self.progress.title}: {self.phase}"
         try:
-            return bool(tick(self, budget))
+            return bool(tick(self, budget) if profile is None else profile.runcall(tick, self, budget))
         finally:
             ticks.append((time.perf_counter() - start, time.thread_time() - cpu, doing))
+            if profile is not None and ticks[-1][0] > profiled[0]:
+                profiled[0] = ticks[-1][0]
+                results["profile"] = told(profile, doing)
 
     growing.hear, growing._grow, growing.go_on, job.tick = heard, grown, went_on, ticked
+
+
+def told(profile: cProfile.Profile, doing: str) -> str:
+    """What a tick did, the longest first."""
+    out = io.StringIO()
+    pstats.Stats(profile, stream=out).sort_stats("cumulative").print_stats(40)
+    return f"{doing}\n{out.getvalue()}"
 
 
 def longest(name: str) -> None:
