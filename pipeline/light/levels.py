@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ..artifacts.common import Metres3
 from ..artifacts.layout import LightLine
 from ..geometry.polygon import Floats
 from .estimate import irradiance
@@ -27,9 +28,12 @@ def levelled(
 ) -> list[LightLine]:
     """The lights, those under the ceiling stronger or weaker where the picture's floor and walls are.
 
-    One light under the ceiling stays as it is: how bright the whole room is is the exposure's.
+    Where there are those of one part of the room only, they stay as they are: how bright the whole room is is the exposure's.
     """
-    fills = [n for n, light in enumerate(lights) if is_fill(light)]
+    fills: dict[Metres3, list[int]] = {}
+    for n, light in enumerate(lights):
+        if is_fill(light):
+            fills.setdefault(light.at, []).append(n)
     seen = places.only(places.is_floor | places.is_wall) if places is not None else None
     if len(fills) < 2 or seen is None or len(seen.points) < LEAST_PLACES:
         return list(lights)
@@ -37,22 +41,22 @@ def levelled(
     albedo = space.albedo_of(np.asarray(seen.surface).astype(np.int64))
     wanted = scene_light(on_screen(seen.light), transform, look) * math.pi / (albedo + GLOSS)
     factors = dict.fromkeys(fills, 1.0)
-    under = {n: below(lights[n], seen.points) for n in fills}
+    under = {at: below(lights[max(of, key=lambda n: lights[n].size)], seen.points) for at, of in fills.items()}
     for _ in range(_ROUNDS):
         changed = arriving.lights.copy()
-        for n, factor in factors.items():
-            changed[n] *= factor
+        for at, factor in factors.items():
+            changed[fills[at]] *= factor
         total = changed.sum(axis=0) + arriving.sky
         whole = float(np.median(wanted / np.maximum(total, 1e-6)))
-        for n, mask in under.items():
+        for at, mask in under.items():
             if mask.sum() >= LEAST_PLACES:
                 needed = float(np.median(wanted[mask] / whole))
-                rest = float(np.median((total - changed[n])[mask]))
-                own = max(float(np.median(arriving.lights[n][mask])), 1e-6)
-                factors[n] = min(_MOST, max(_LEAST, (needed - rest) / own))
+                rest = float(np.median((total - changed[fills[at]].sum(axis=0))[mask]))
+                own = max(float(np.median(arriving.lights[fills[at]].sum(axis=0)[mask])), 1e-6)
+                factors[at] = min(_MOST, max(_LEAST, (needed - rest) / own))
     return [
-        light.model_copy(update={"energy": round(light.energy * factors[n], 2)}) if n in factors else light
-        for n, light in enumerate(lights)
+        light.model_copy(update={"energy": round(light.energy * factors[light.at], 2)}) if is_fill(light) else light
+        for light in lights
     ]
 
 

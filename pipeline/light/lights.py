@@ -28,8 +28,9 @@ EVEN = 3.0
 """Watts a square metre on the floor."""
 _INTO_ROOM = 0.03  # metres that a window's light stands off the wall's inner face, so that no frame swallows it
 _UNDER_CEILING = 0.015  # metres
-_MARGIN, _SHARE = 0.18, 0.07
-"""Between the light under the ceiling and the walls: metres, and of a narrow room's side; nearer it burns a rim into them."""
+_MARGINS = ((0.06, 0.025), (0.5, 0.16))
+"""Between the light under the ceiling and the walls: metres, and of a narrow room's side. Two panels, one within the other, so
+that it is softer towards the walls: one alone burns a rim into them where it is near, and leaves a dark one where it is not."""
 _REACH = 0.6  # metres from a lamp at which its irradiance is what its style says
 _GLASS = 0.92  # of a window's width and height that is not frame
 _SUN_HEIGHT = 6.0  # metres; where the sun is drawn
@@ -192,11 +193,12 @@ def _fills(space: Space, taken: set[str]) -> list[LightLine]:
     z = space.height - _UNDER_CEILING
     panels = []
     for x0, x1, y0, y1 in rectangles(space):
-        width, depth = (max(side - 2 * min(_MARGIN, _SHARE * side), 0.3) for side in (x1 - x0, y1 - y0))
-        at = ((x0 + x1) / 2, (y0 + y1) / 2, z)
-        panels.append(
-            LightLine(id=_free("ceiling_light", taken), kind="area", at=at, energy=1.0, size=width, size_y=depth)
-        )
+        for metres, share in _MARGINS:
+            width, depth = (max(side - 2 * min(metres, share * side), 0.3) for side in (x1 - x0, y1 - y0))
+            at = ((x0 + x1) / 2, (y0 + y1) / 2, z)
+            panels.append(
+                LightLine(id=_free("ceiling_light", taken), kind="area", at=at, energy=1.0, size=width, size_y=depth)
+            )
     if not panels:
         at = (float(low[0] + high[0]) / 2, float(low[1] + high[1]) / 2, z)
         panels.append(LightLine(id=_free("ceiling_light", taken), kind="area", at=at, energy=1.0, size=0.5, size_y=0.5))

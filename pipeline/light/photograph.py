@@ -22,7 +22,7 @@ from .tone import scene_light
 _ACROSS, _DOWN = 16, 10
 _BRIGHT = 80.0
 """Per cent of a view that are darker than what is exposed for: a wall, a bed, a worktop in the light."""
-_AS = 0.84
+_AS = 0.78
 """How bright that is on the screen."""
 _LEAST, _MOST = -0.5, 1.0
 _ABOVE = 2e-3  # metres

@@ -36,7 +36,7 @@ def shell_pieces(record: Record) -> tuple[list[ShellPiece], list[str]]:
         pieces.append(wall_piece(run, holes[run.id]))
     for run in runs:
         for hole in holes[run.id]:
-            pieces.extend(fitting_pieces(run, hole))
+            pieces.extend(fitting_pieces(run, hole, holes[run.id]))
     return pieces, notes
 
 
