@@ -24,10 +24,6 @@ _WET = re.compile(r"bath|toilet|shower|washbasin|\bsink\b|stove|\boven\b|dishwas
 _TINTED = 7.0
 """Distance in CIELAB's a and b by which a wall's paint differs from the other walls'."""
 
-_OPEN_SKY = 0.68
-"""The light that the floor has of that on the walls' upper faces, on which the whole sky looks down (`light/lights.py`: 3 for
-pi times 1.3, and more in the sun)."""
-
 
 @dataclass
 class ShellColours:
@@ -63,7 +59,7 @@ def shell_colours(layout: Layout, camera: CameraModel, picture: ReferencePicture
     _walls(found, seen)
     tops = top_colour(layout, camera, small(picture, meant=True))
     if tops is not None:
-        found.tops = to_code(np.minimum(tops * gains * _OPEN_SKY, 0.9))
+        found.tops = to_code(np.minimum(tops * gains, 0.9))
     return found
 
 

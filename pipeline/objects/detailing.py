@@ -108,6 +108,17 @@ class Detailing:
                 covers = covers_of(proxy, self.layout)
                 self.library[proxy.id] = best_piece(proxy, self.described(proxy.id), self._carried(proxy.id), covers)
 
+    def leave(self, first: str) -> bool:
+        """Let an object, and those that are made like it, stay as they stand; False where they do not stand yet."""
+        group = self.members.get(first, [first])
+        if any(i not in self.standing.furnished for i in group):
+            return False
+        self.todo = [proxy for proxy in self.todo if proxy.id != first]
+        self.kept |= frozenset(group)
+        for kept in (self.members, self.library, self.written, self.notes):
+            kept.pop(first, None)
+        return True
+
     def take_pieces(self, replies: list[PieceReply]) -> None:
         """Take over what a model chose from the library, where that can be made."""
         wanted = {reply.id: reply for reply in replies}

@@ -129,10 +129,10 @@ def write_programs(view: View, detailing: Detailing) -> Asking:
     better = {o.id: o for reply in corrections if reply is not None for o in reply.objects}
     for draft in drafts.values():
         draft.mend(detailing, better.get(draft.proxy.id))
-        if looked:
-            draft.keep_drafted(detailing)
-        else:
+        if not looked:
             draft.keep(detailing)
+        elif draft.made is not None or not detailing.leave(draft.proxy.id):
+            draft.keep_drafted(detailing)
 
 
 def _weight(proxy: ProxyLine) -> float:

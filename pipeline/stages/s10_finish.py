@@ -30,6 +30,7 @@ from ..artifacts.objects import RoomStyle
 from ..correction.correct import Options, correct
 from ..correction.looks import pictures_of
 from ..errors import ProgramError, RoomError
+from ..geometry.polygon import Floats
 from ..layout.hand import apply_hand_edits
 from ..light.albedo import room_albedo
 from ..light.colour_match import matched_tint
@@ -39,13 +40,15 @@ from ..light.glowing import switched
 from ..light.lamps import is_lamp
 from ..light.levels import levelled
 from ..light.lights import Lit, make_lights
-from ..light.measure import Places, shines, surround, visible_places
+from ..light.measure import Places, shines, small, surround, visible_places
 from ..light.photograph import stops_for
 from ..light.space import Space, space_of
 from ..light.standing import as_it_stands, with_former_fixes
 from ..light.tint import background_light, light_tint
 from ..light.tone import LOOK, TRANSFORM
+from ..light.upper_faces import with_upper_faces
 from ..light.views import EYES, TOP, cut_height, eye_cameras, top_camera
+from ..materials.tops import top_colour
 from ..objects.asking import picture_box
 from ..objects.text import relaid
 from ..program.edits import LISTS
@@ -84,7 +87,8 @@ def run(view: View) -> StageRun:
     yield Tell("Looking for faults", 3, 4)
     shown = pictures_of(record)
     pictures = (yield FindImages(shown)) if shown else None
-    text, report = _corrected(view, switched(relaid(before.text, held), held, lamps, record.furnished), pictures)
+    text = switched(relaid(before.text, held), held, lamps, record.furnished)
+    text, report = _corrected(view, with_upper_faces(text, held, _tops_seen(view, held)), pictures)
     if view.only is not None:
         report = with_former_fixes(report, view.recall(CorrectionReport), held)
     yield Tell("Building the room", 4, 4)
@@ -151,6 +155,13 @@ def _places(view: View, space: Space, calibration: Calibration) -> Places | None
         return None
     places = visible_places(space, calibration.camera, view.reference)
     return places if len(places.points) else None
+
+
+def _tops_seen(view: View, layout: Layout) -> Floats | None:
+    """Linear colour of the walls' upper faces in the picture; None for a drawn plan, or where it does not show them."""
+    if view.need(SceneAnalysis).view == "plan":
+        return None
+    return top_colour(layout, view.need(Calibration).camera, small(view.reference, meant=True))
 
 
 def _shining(view: View, calibration: Calibration, lamps: Sequence[ProxyLine], places: Places | None) -> list[str]:

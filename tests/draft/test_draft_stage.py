@@ -30,7 +30,7 @@ from code_as_room.pipeline.program.lines import parse_layout
 from code_as_room.pipeline.prompting import make_prompt
 from code_as_room.pipeline.run import Run
 from code_as_room.pipeline.run_refining import refine
-from code_as_room.pipeline.stages import all_stages, s00_draft
+from code_as_room.pipeline.stages import all_stages, s00_draft, s06_asking
 from code_as_room.pipeline.stages.base import View
 from PIL import Image, ImageDraw
 
@@ -243,3 +243,33 @@ def test_what_was_drafted_unseen_is_looked_at_and_mended_once(picture: Reference
     assert geometry is not None and geometry.of("pouf_2").function == geometry.of("pouf_1").function
     assert not [step for step in plan(run.memory) if step.looks]
     assert all(run.status(stage) == "done" for stage in all_stages())
+
+
+class Spoiling(Looking):
+    """Takes the draft's programs for unusable, and writes nothing that is better."""
+
+    def answer(self, prompt: Prompt, cancel: threading.Event, progress: Callable[[str], None] | None = None) -> Reply:
+        if prompt.key.startswith("06_correct"):
+            self.asked.append(prompt.key)
+            broken = [
+                {"id": i, "program": f"def {i}(size):\n    return nothing\n", "keep": False}
+                for i in ("pouf_1", "armchair_1")
+            ]
+            return Reply(json.dumps({"objects": broken}), self.name)
+        return super().answer(prompt, cancel, progress)
+
+
+def test_a_look_that_helps_nothing_leaves_what_was_drafted(
+    picture: ReferencePicture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    model = Spoiling()
+    run = make(picture, model)
+    run.run_all([s00_draft.STAGE, *all_stages()])
+    before = {o.id: (o.source, o.function) for o in run.memory.latest(Geometry).objects}
+    # Whatever keeps a drafted program from being taken once more: it must not cost the object that stands.
+    monkeypatch.setattr(
+        s06_asking._Draft, "_evaluated", lambda self, detailing, source, stretch=0.0: (None, "no", source)
+    )
+    refine(run, model)
+    assert "06_correct/1" in model.asked
+    assert {o.id: (o.source, o.function) for o in run.memory.latest(Geometry).objects} == before
