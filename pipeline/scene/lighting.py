@@ -20,8 +20,6 @@ from ..program.prelude.record import Record
 from .nodes import ensure_node_tree
 from .tags import FIELD, KIND, LINE
 
-SEEN_NODE = "What a camera sees"
-"""Label of the world's node for what lies round the room and outside its windows."""
 WORLD_LINE = FIELD + "world_line"  # on our world, and on the room: the line that was written last
 WORLD_BEFORE = FIELD + "world_before"  # on the room: the world that the scene had before ours
 VIEW_LINE = FIELD + "view_line"  # on the room: the line that was written last
@@ -153,7 +151,7 @@ def _write_world(world: Any, line: dict[str, Any]) -> None:
     shines.inputs["Color"].default_value = (red, green, blue, 1.0)
     shines.inputs["Strength"].default_value = line["strength"]
     seen.inputs["Color"].default_value = (*line["background"], 1.0)
-    shines.label, seen.label = "Light", SEEN_NODE
+    shines.label, seen.label = "Light", "What a camera sees"
     tree.links.new(path.outputs["Is Camera Ray"], mix.inputs[0])
     tree.links.new(shines.outputs["Background"], mix.inputs[1])
     tree.links.new(seen.outputs["Background"], mix.inputs[2])

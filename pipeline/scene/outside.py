@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 
 from ..light.tone import luminance, scene_light, shown
-from .lighting import SEEN_NODE
 
+SEEN_NODE = "What a camera sees"
+"""Label of the world's node for what lies round the room and outside its windows (`scene/lighting.py`)."""
 _DAY = 0.6
 """On the screen, round the room; what is darker is an evening, and stays."""
 _SKY, _HUE = 0.955, (0.985, 1.0, 1.02)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import threading
 from collections import OrderedDict
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from ..program.assemble import assemble, prelude_text
@@ -12,7 +13,7 @@ from ..program.evaluate import evaluate
 from ..program.limits import FINISHED_ROOM_LIMITS
 from ..program.lines import parse_layout
 from ..program.prelude.record import Record
-from .targets import Plan, plan_record
+from .targets import Plan, Target, plan_record
 from .texts import check_lines
 
 
@@ -39,7 +40,7 @@ def plan_known(text: str, record: Record, former: BuildPlan | None = None) -> Bu
     Raises:
         SceneError: a line of it is too long for Blender.
     """
-    room = plan_record(record, former.room if former is not None else None)
+    room = plan_record(record, _known_digests(former.room) if former is not None else None)
     full = assemble(text)
     groups = (record.walls, record.doors, record.windows, record.openings, record.proxies, record.lights)
     lines = (line["id"] for group in (*groups, record.worlds, record.views, record.cameras) for line in group)
@@ -66,6 +67,21 @@ def plan_build(text: str, meshes: bool = True) -> BuildPlan:
         for target in room.targets:
             room.mesh(target)
     return BuildPlan(text, full, room)
+
+
+def _known_digests(former: Plan) -> Callable[[Target], str | None]:
+    """The digests of what has the very same shapes and finishes as in a former plan."""
+    before = {target.key: target for target in former.targets}
+
+    def known(target: Target) -> str | None:
+        other = before.get(target.key)
+        if other is None or (other.family, other.finishes) != (target.family, target.finishes):
+            return None
+        same = len(other.shapes) == len(target.shapes)
+        same = same and all(a is b for a, b in zip(other.shapes, target.shapes, strict=True))
+        return former.digests[target.key][1] if same else None
+
+    return known
 
 
 class _Ids:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import hashlib
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -83,35 +84,20 @@ class Plan:
         return found
 
 
-def plan_record(record: Record, former: Plan | None = None) -> Plan:
+def plan_record(record: Record, known: Callable[[Target], str | None] | None = None) -> Plan:
     """Everything about building a record that can be worked out without Blender.
 
     Args:
-        former: the plan of a room that is much the same; what has the same shapes in both is not looked through again.
+        known: the digest of a target's shapes where it is known already; they are not looked through again.
     """
     targets, notes = record_targets(record)
     targets = [_finished(target, record, notes) for target in targets]
-    known = {target.key: target for target in former.targets} if former is not None else {}
     digests = {}
     for target in targets:
-        before = known.get(target.key)
-        if former is not None and before is not None and _looks_same(before, target):
-            shapes = former.digests[target.key][1]
-        else:
-            shapes = shapes_digest(target.dressed(), target.family)
+        shapes = known and known(target) or shapes_digest(target.dressed(), target.family)
         digests[target.key] = (target_digest(target, shapes), shapes)
     looks = {look.key: look for finish in record.finishes.values() for look in finish.values()}
     return Plan(parents_first(targets), digests, record, notes, looks=looks)
-
-
-def _looks_same(one: Target, other: Target) -> bool:
-    """Whether two targets have the very same shapes and finishes."""
-    return (
-        one.family == other.family
-        and one.finishes == other.finishes
-        and len(one.shapes) == len(other.shapes)
-        and all(a is b for a, b in zip(one.shapes, other.shapes, strict=True))
-    )
 
 
 def _finished(target: Target, record: Record, notes: list[str]) -> Target:

@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 import pytest
 from code_as_room.pipeline.scene.backend import BlenderScene
-from code_as_room.pipeline.scene.lighting import SEEN_NODE
+from code_as_room.pipeline.scene.outside import SEEN_NODE
 from code_as_room.pipeline.scene.shoot import set_stage, shoot, strike_stage
 from PIL import Image
 

@@ -23,7 +23,10 @@ _PANE = 0.72  # metres: about how wide one pane of glass is
 
 
 def fitting_pieces(run: WallRun, hole: Hole, holes: list[Hole]) -> list[ShellPiece]:
-    """The pieces (`ShellPiece`) for one of a wall run's holes: a door and its leaf, a window, or an outline."""
+    """The pieces (`ShellPiece`) for one of a wall run's holes: a door and its leaf, a window, or an outline.
+
+    A door has no head where an opening goes on above it.
+    """
     dx, dy = run.direction
     x = hole.x[1] if hole.against else hole.x[0]
     origin = (run.start[0] + dx * x, run.start[1] + dy * x, 0.0)
@@ -37,8 +40,8 @@ def fitting_pieces(run: WallRun, hole: Hole, holes: list[Hole]) -> list[ShellPie
     if hole.kind == "window":
         return [ShellPiece(shapes=_window(width, hole.z, faces, room_side), **common)]
     frame = _members(width, (hole.z[0], hole.z[1]), (min(faces) - _PROUD, max(faces) + _PROUD), sill=False)
-    if any(other.x == hole.x and other.z[0] == hole.z[1] for other in holes):
-        frame.pop()  # the wall is open above the door: no head hangs in the air
+    if any(h.x == hole.x and h.z[0] == hole.z[1] for h in holes):
+        frame.pop()
     member = min(_FRAME, width / 5)
     opened = min(max(float(hole.line.get("open", 0.0)), -180.0), 180.0)
     # A leaf lies flush with the face that it opens towards, else it would turn within the wall.
