@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..artifacts.common import Metres3
+from ..artifacts.common import Metres2
 from ..artifacts.layout import LightLine
 from ..geometry.polygon import Floats
 from .estimate import irradiance
@@ -30,10 +30,10 @@ def levelled(
 
     Where there are those of one part of the room only, they stay as they are: how bright the whole room is is the exposure's.
     """
-    fills: dict[Metres3, list[int]] = {}
+    fills: dict[Metres2, list[int]] = {}
     for n, light in enumerate(lights):
         if is_fill(light):
-            fills.setdefault(light.at, []).append(n)
+            fills.setdefault(light.at[:2], []).append(n)
     seen = places.only(places.is_floor | places.is_wall) if places is not None else None
     if len(fills) < 2 or seen is None or len(seen.points) < LEAST_PLACES:
         return list(lights)
@@ -55,7 +55,7 @@ def levelled(
                 own = max(float(np.median(arriving.lights[fills[at]].sum(axis=0)[mask])), 1e-6)
                 factors[at] = min(_MOST, max(_LEAST, (needed - rest) / own))
     return [
-        light.model_copy(update={"energy": round(light.energy * factors[light.at], 2)}) if is_fill(light) else light
+        light.model_copy(update={"energy": round(light.energy * factors[light.at[:2]], 2)}) if is_fill(light) else light
         for light in lights
     ]
 

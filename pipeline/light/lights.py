@@ -27,7 +27,7 @@ from .space import Space, Wall, inside
 EVEN = 3.0
 """Watts a square metre on the floor."""
 _INTO_ROOM = 0.03  # metres that a window's light stands off the wall's inner face, so that no frame swallows it
-_UNDER_CEILING = 0.015  # metres
+_UNDER_CEILING, _APART = 0.015, 0.01  # metres
 _MARGINS = ((0.06, 0.025), (0.5, 0.16))
 """Between the light under the ceiling and the walls: metres, and of a narrow room's side. Two panels, one within the other, so
 that it is softer towards the walls: one alone burns a rim into them where it is near, and leaves a dark one where it is not."""
@@ -193,9 +193,10 @@ def _fills(space: Space, taken: set[str]) -> list[LightLine]:
     z = space.height - _UNDER_CEILING
     panels = []
     for x0, x1, y0, y1 in rectangles(space):
-        for metres, share in _MARGINS:
+        for number, (metres, share) in enumerate(_MARGINS):
             width, depth = (max(side - 2 * min(metres, share * side), 0.3) for side in (x1 - x0, y1 - y0))
-            at = ((x0 + x1) / 2, (y0 + y1) / 2, z)
+            # Not in one plane: of lights that a ray meets at once, Cycles counts one.
+            at = ((x0 + x1) / 2, (y0 + y1) / 2, z - number * _APART)
             panels.append(
                 LightLine(id=_free("ceiling_light", taken), kind="area", at=at, energy=1.0, size=width, size_y=depth)
             )
