@@ -13,7 +13,8 @@ DEEP = 0.01
 """Metres that outlines and heights may run into each other."""
 SHARED = 0.02
 SHARED_SMALL = 0.1
-"""Part of the smaller one's solid that two things may share: cushions and books lean into each other."""
+SHARED_SOFT = 0.35
+"""Part of the smaller one's solid that two things may share: books lean into each other, cushions are pressed together."""
 IN_THE_WAY = 0.06
 """Metres that a thing may reach into where a door opens."""
 
@@ -32,6 +33,8 @@ def shared_part(a: Body, b: Body, knowledge: Knowledge) -> float:
             return 0.0
         smaller = min(one.volume, two.volume)
         share = shared_volume(one, two) / smaller if smaller > 0 else 0.0
+        if a.soft and b.soft:
+            return share if share > SHARED_SOFT else 0.0
         most = SHARED_SMALL if "surface" in (a.line.placement, b.line.placement) else SHARED
         return share if share > most else 0.0
 

@@ -49,7 +49,7 @@ def matched_tint(
     seen = places.only(_in_range(places)) if places is not None else None
     if seen is None or len(seen.points) < LEAST_PLACES:
         return tint
-    wanted = np.log(coloured_light(seen.colours, transform))
+    wanted = np.log(np.maximum(coloured_light(seen.colours, transform), 1e-4))
     groups = _groups(seen)
     own, rest = _arriving(spaces, lights, world, tinted, seen, tint)
     now = np.array(tint, dtype=float)

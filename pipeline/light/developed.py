@@ -3,11 +3,10 @@
 
 Renders are mostly shown through a transform that keeps bright light from burning out (AgX, Filmic): blacks become grey, and
 whatever is bright loses most of its colour. An eye takes that for the picture's manner and sees strong colours all the same.
-Taken as base colours they would go through a transform again, and the room would look washed out. So where a picture's range
+Taken as base colours they would be too pale in any light. So where a picture's range
 is narrow as only such a transform leaves it, its colours are led back through AgX; bright greys stay as bright as they are.
 
-The matrices were fitted to 1500 random colours as Blender 5.0 shows them (AgX, Medium High Contrast): the colours come back to
-within 3 % for nine of ten. The curve of greys is that of `light.tone`.
+A room made from such a picture is shown through the same transform (`tone_of`), and so looks like the picture again.
 """
 
 from __future__ import annotations
@@ -19,13 +18,10 @@ from numpy.typing import NDArray
 from PIL import Image, ImageFilter
 
 from ..picture import ReferencePicture
-from .tone import AGX, MEDIUM_HIGH, linear, luminance, scene_light, shown
+from .tone import AGX, LOOK, MEDIUM_HIGH, TRANSFORM, led_back, linear, luminance, shown
 
 Floats = NDArray[np.float64]
 
-_BEFORE = np.linalg.inv(np.array(((0.6974, 0.2464, 0.0562), (0.0841, 0.8020, 0.1139), (0.0611, 0.1302, 0.8087))))
-_AFTER = np.linalg.inv(np.array(((1.3893, -0.3213, -0.0680), (-0.1045, 1.1396, -0.0351), (-0.1016, -0.1571, 1.2587))))
-"""What AgX does to linear light before its curve, and to what the curve gives, the other way round."""
 _SIDE = 512
 _MARGIN = 0.08
 """Part of the picture at each edge that may be a frame or the paper."""
@@ -34,6 +30,8 @@ _WHITE = (238.0, 248.0)
 """Values of the darkest and the brightest that a picture has: from where to where it counts as washed out."""
 _DIM = (180.0, 200.0)
 """Brightest values of pictures without anything white, which tell nothing."""
+_SURE = 0.5
+"""How washed out a picture must be to be shown through such a transform again."""
 _KEPT = 75.0
 """Per cent of the picture that are darker than what keeps its brightness."""
 
@@ -56,6 +54,11 @@ def wash(picture: ReferencePicture) -> float:
     return float(np.clip((dark, bright, lit), 0.0, 1.0).prod())
 
 
+def tone_of(picture: ReferencePicture) -> tuple[str, str]:
+    """View transform and look with which a room made from the picture looks like it."""
+    return (AGX, MEDIUM_HIGH) if wash(picture) >= _SURE else (TRANSFORM, LOOK)
+
+
 @functools.lru_cache(maxsize=2)
 def developed(picture: ReferencePicture) -> NDArray[np.uint8]:
     """The picture's pixels (height, width, 3), sRGB, with the colours that things had; the picture's own where it is not washed out.
@@ -66,16 +69,9 @@ def developed(picture: ReferencePicture) -> NDArray[np.uint8]:
     share = wash(picture)
     if share > 0.0:
         screen = pixels.astype(float) / 255.0
-        given, meant = linear(screen), _led_back(screen)
+        given, meant = linear(screen), led_back(screen)
         kept = np.percentile(luminance(given), _KEPT) / max(float(np.percentile(luminance(meant), _KEPT)), 1e-6)
         light = shown(share * kept * meant + (1.0 - share) * given, "Standard")
         pixels = np.round(light * 255.0).astype(np.uint8)
     pixels.flags.writeable = False
     return pixels
-
-
-def _led_back(screen: Floats) -> Floats:
-    """The linear light of AgX's pixels (0..1)."""
-    curve = np.clip(screen @ _AFTER.T, 0.0, 1.0)
-    light: Floats = np.maximum(scene_light(curve, AGX, MEDIUM_HIGH) @ _BEFORE.T, 0.0)
-    return light

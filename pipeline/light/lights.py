@@ -28,7 +28,7 @@ EVEN = 3.0
 """Watts a square metre on the floor."""
 _INTO_ROOM = 0.03  # metres that a window's light stands off the wall's inner face, so that no frame swallows it
 _UNDER_CEILING, _APART = 0.015, 0.01  # metres
-_MARGINS = ((0.06, 0.025), (0.5, 0.16))
+_MARGINS = ((0.03, 0.01), (0.5, 0.16))
 """Between the light under the ceiling and the walls: metres, and of a narrow room's side. Two panels, one within the other, so
 that it is softer towards the walls: one alone burns a rim into them where it is near, and leaves a dark one where it is not."""
 _REACH = 0.6  # metres from a lamp at which its irradiance is what its style says

@@ -65,9 +65,13 @@ class Places:
         return luminance(self.colours)
 
 
-def visible_places(space: Space, camera: CameraModel, picture: ReferencePicture) -> Places:
-    """Places on floor and walls that the picture shows, spread evenly, at most `MOST_PLACES` of each."""
-    pixels = small(picture, meant=True)
+def visible_places(space: Space, camera: CameraModel, picture: ReferencePicture, meant: bool = True) -> Places:
+    """Places on floor and walls that the picture shows, spread evenly, at most `MOST_PLACES` of each.
+
+    Args:
+        meant: with the colours that things had, where the picture is washed out; else as the picture shows them.
+    """
+    pixels = small(picture, meant)
     points, normals, surface = _floor_places(space)
     bare = surface == FLOOR
     floor = _seen(space, camera, pixels, points[bare], normals[bare], surface[bare])

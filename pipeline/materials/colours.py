@@ -23,6 +23,9 @@ _SHOWN = 0.02
 _NEAR = 14.0
 """CIEDE2000 within which a program's own colour and a measured one are taken for the same thing."""
 _MOST = 4
+_WHITE, _SHADED, _GREYISH = 86.0, 72.0, 9.0
+"""CIELAB lightness of white things, and of those that stand in the room's shade, and the chroma of both: white things keep the
+white that they were given, or each fold of a bed and each cushion would have a tint of its own, by where its shadow fell."""
 
 
 def uncovered(cells: Sequence[Cell], shapes: Sequence[Shape], covers: Sequence[Shape]) -> list[Cell]:
@@ -92,6 +95,11 @@ def _cost(
     return cost + 0.8 * sum(c.share for c in colours if c not in [given for _, given in pairs])
 
 
+def _is_white(code: str, least: float) -> bool:
+    light, a, b = lab_of(code)
+    return light > least and (a * a + b * b) ** 0.5 < _GREYISH
+
+
 def _may(cell: Cell, colour: MeasuredColour, share: float) -> bool:
     light, a, b = lab_of(colour.code)
     if cell.role == "foliage":
@@ -101,4 +109,6 @@ def _may(cell: Cell, colour: MeasuredColour, share: float) -> bool:
         return False
     if not cell.code:
         return True
+    if _is_white(cell.code, _WHITE) and _is_white(colour.code, _SHADED):
+        return False
     return difference(cell.code, colour.code) < (2 * _NEAR if share > 0.6 and colour.share > 0.6 else _NEAR)

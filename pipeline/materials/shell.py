@@ -12,7 +12,7 @@ from ..artifacts.camera import CameraModel
 from ..artifacts.layout import Layout
 from ..light.measure import LEAST_PLACES, small, visible_places
 from ..light.space import WALLS, space_of
-from ..objects.colours import Floats, from_code, to_code
+from ..objects.colours import BRIGHTEST, Floats, as_paint, from_code, to_code
 from ..objects.tinting import calm
 from ..picture import ReferencePicture
 from ..program.prelude.enclosure import TOPS
@@ -50,12 +50,12 @@ def shell_colours(layout: Layout, camera: CameraModel, picture: ReferencePicture
     found = ShellColours()
     floor = places.colours[places.is_floor]
     if len(floor) >= LEAST_PLACES:
-        found.floor = calm(to_code(np.minimum(_paint(floor) * gains, 0.86)))
+        found.floor = calm(to_code(_in_neutral_light(_paint(floor), gains)))
     seen: dict[str, tuple[str, int]] = {}
     for number, wall in enumerate(space.walls):
         here = places.colours[places.surface == WALLS + number]
         if len(here) >= 5 and wall.id not in seen:
-            seen[wall.id] = (calm(to_code(np.minimum(_paint(here) * gains, 0.86))), len(here))
+            seen[wall.id] = (calm(to_code(_in_neutral_light(_paint(here), gains))), len(here))
     _walls(found, seen)
     tops = top_colour(layout, camera, small(picture, meant=True))
     if tops is not None:
@@ -69,6 +69,11 @@ def _paint(colours: Floats) -> Floats:
     low, high = np.percentile(light, (40, 85))
     middle: Floats = colours[(light >= low) & (light <= high)].mean(axis=0)
     return middle
+
+
+def _in_neutral_light(colour: Floats, gains: Floats) -> Floats:
+    paint: Floats = np.minimum(as_paint(colour, gains), BRIGHTEST)
+    return paint
 
 
 def _walls(found: ShellColours, seen: dict[str, tuple[str, int]]) -> None:

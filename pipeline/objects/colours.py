@@ -37,6 +37,10 @@ _LEAK = 2.0
 """Pixels round what lies on an object that may show either."""
 _OWN = 0.35
 """Least share of an object that has colours of its own; of fewer pixels they are a foot or a shadow."""
+_BURNT = 0.93
+"""Linear light of the least of three colours, from which a pixel has no hue left."""
+BRIGHTEST = 0.86
+"""Linear light that the whitest usual paint gives back."""
 _WHITE = 0.8
 """Linear brightness of what is white in a picture that is lit as usual."""
 
@@ -82,7 +86,7 @@ class ColourMeter:
             return [], seen
         if len(found) > _MOST_PIXELS:
             found = found[np.linspace(0, len(found) - 1, _MOST_PIXELS).astype(int)]
-        return dominant(found * self.gains), seen
+        return dominant(as_paint(found, self.gains)), seen
 
     def _hidden(self, proxy: ProxyLine) -> NDArray[np.bool_]:
         """The pixels of what may stand before an object or lies on it, with the rims of what lies on it."""
@@ -190,6 +194,19 @@ def light_gains(pixels: Floats) -> Floats:
     strength = float(np.clip(_WHITE / max(float(white.mean()), 1e-4), 1.0, 1.6))
     gains: Floats = colour * strength
     return gains
+
+
+def as_paint(colours: Floats, gains: Floats) -> Floats:
+    """Linear colours (..., 3) in neutral light, no brighter than paint is.
+
+    What would be brighter keeps its hue: cut off colour by colour, a pale pink would turn yellow, a pale blue white. What is
+    burnt out in the picture has no hue to keep.
+    """
+    paint = colours * gains
+    peak = paint.max(axis=-1, keepdims=True)
+    burnt = colours.min(axis=-1, keepdims=True) > _BURNT
+    result: Floats = np.where((peak > BRIGHTEST) & ~burnt, paint * (BRIGHTEST / np.maximum(peak, 1e-6)), paint)
+    return np.minimum(result, 1.0)
 
 
 def dominant(pixels: Floats) -> list[MeasuredColour]:

@@ -22,25 +22,26 @@ MARKER = "# ==== room ===="
 MOST_BYTES = 300_000
 """A longer room.py does without the docstrings of the prelude's own functions, a file also without its checks."""
 
+_PAIRED = re.compile(r", strict=(?:True|False)\)")
+"""That lists are of one length was shown by the package's own tests; it would be said fifty times."""
 _HERE = Path(__file__).resolve().parent
 _MADE = {**registry.CONSTRUCTORS, **registry.LOOKS}
 _FRESH = _HERE.parent / "scene" / "fresh.py"
 _PUBLIC = frozenset({*registry.CONSTANTS, *registry.MATH, *_MADE, *registry.LINE_NAMES})
 
 _HEADER = '''# SPDX-License-Identifier: GPL-3.0-or-later
-# The functions of the objects are as their authors wrote them; rules of style do not apply to those.
+# The objects' functions are as their authors wrote them; rules of style do not apply.
 # ruff: noqa: B007, B023, B905, C416, E731, FURB136, PLR1716, RUF007, RUF046, RUF059, RUF100
 """A room as a program, made with Code-as-Room for Blender.
 
-Run it in Blender 4.5 or later, with no add-on: `blender --background --python room.py`, or open it in the Text Editor
-and press Run Script. It makes the room in a collection of its own and touches nothing else; what you changed by hand
-since the last run stays as it is.
+Run it in Blender 4.5 or later, with no add-on: `blender --background --python room.py`, or by Run Script in the Text
+Editor. It makes the room in a collection of its own and touches nothing else; your changes stay.
 
-Below the line with "room" between equals signs is the room itself, and that is the part to edit: one line for each
-wall, opening, object, light and camera (metres, Z up, yaw in degrees, 0 faces -Y), then functions that model objects.
-Above it is the prelude: of the functions that a room can be written with, those that this room uses.
+Below the line "==== room ====" is the room itself, the part to edit: one line for each wall, opening, object, light
+and camera (metres, Z up, yaw in degrees, 0 faces -Y), then functions that model objects. Above it is the prelude: the
+functions that this room uses.
 
-Licence: the prelude is part of Code-as-Room, GPL-3.0-or-later. The room is the work of the artist who made it.
+Licence: the prelude is part of Code-as-Room, GPL-3.0-or-later. The room is its artist's work.
 """
 
 from __future__ import annotations
@@ -48,7 +49,7 @@ from __future__ import annotations
 '''
 
 _TRUSTING = """
-This is a large room, so its prelude does not check values any more: those below were checked when it was made.
+The room is large, so its prelude does not check values again: they were checked when it was made.
 """
 
 _BUILD = '''def build():
@@ -86,7 +87,8 @@ def _joined() -> str:
     lines += [f"{name} = {value!r}" for name, value in registry.CONSTANTS.items()]
     lines += [f"_recorder = {names['recorder', 'Recorder']}()"]
     lines += [f"{name} = _recorder.{name}" for name in registry.LINE_NAMES if name != "build"]
-    return trimmed("\n".join([body, "", *lines, "", "", _BUILD.format(make=names["fresh", "make_record"])]))
+    whole = "\n".join([body, "", *lines, "", "", _BUILD.format(make=names["fresh", "make_record"])])
+    return trimmed(_PAIRED.sub(")", whole))
 
 
 @functools.lru_cache(maxsize=8)

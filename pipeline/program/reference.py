@@ -61,16 +61,6 @@ def armchair_1(size=(0.8, 0.78, 0.85)):
 
 
 @functools.lru_cache(maxsize=1)
-def short_reference() -> str:
-    """What a model has to know to mend an object program: the rules, and every constructor with its parameters only."""
-    lines = []
-    for title, names in _SECTIONS:
-        shown = [f"{name}({signature(name, registry.CONSTRUCTORS[name])})" for name in names or _operations()]
-        lines.append(f"{title}: {'; '.join(shown)}\n")
-    return "".join([_introduction(), *lines])
-
-
-@functools.lru_cache(maxsize=1)
 def reference() -> str:
     """What a model has to know of the language to model an object: rules, every constructor, an example; at most 8 kB."""
     parts = [_introduction()]

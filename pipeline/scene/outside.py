@@ -17,8 +17,8 @@ SEEN_NODE = "What a camera sees"
 """Label of the world's node for what lies round the room and outside its windows (`scene/lighting.py`)."""
 _DAY = 0.6
 """On the screen, round the room; what is darker is an evening, and stays."""
-_SKY, _HUE = 0.955, (0.985, 1.0, 1.02)
-"""On the screen: nearly burnt out; and a little blue."""
+_SKY, _HUE = 0.9, (0.9, 1.0, 1.09)
+"""On the screen: bright, but not burnt out, and blue enough to be a sky."""
 
 
 def brighten_outside(stage: Any, exposure: float) -> Any | None:

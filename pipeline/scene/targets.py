@@ -80,7 +80,9 @@ class Plan:
         digest = self.digests[target.key][1]
         found = self.arrays.get(digest)
         if found is None:
-            found = self.arrays[digest] = mesh_arrays(target.dressed())
+            found = self.arrays[digest] = mesh_arrays(
+                target.dressed(), furniture=target.key[0] in self.record.furnished
+            )
         return found
 
 

@@ -24,7 +24,7 @@ from ..objects.eyes import eyes_on
 from ..objects.mending import mended
 from ..objects.written import FAR, STRETCH, Written, take_program
 from ..program.prelude.palette import category_family
-from ..program.reference import reference, short_reference
+from ..program.reference import reference
 from .base import View
 from .wishes import Ask, Picture, Portrait, Request, Tell, Wish
 
@@ -252,7 +252,7 @@ def _second_request(view: View, detailing: Detailing, number: int, batch: Sequen
         prompt="06_correct",
         reply=ProgramsReply,
         values={
-            "reference": short_reference(),
+            "reference": reference(),
             "pictures": "; ".join(f"{n} {what}" for n, what in enumerate(order, 1)) or "none",
             "style": detailing.style.style or "not known",
             "objects": "\n\n".join(draft.told(_what(view, detailing, draft.proxy)) for draft in batch),

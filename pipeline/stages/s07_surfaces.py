@@ -27,6 +27,7 @@ from ..program.lines import parse_layout
 from ..program.prelude.proxies import proxy_shapes
 from ..program.prelude.shape import Shape
 from ..surfaces.choose import Carriers, Seated, base_of, carriers_under
+from ..surfaces.hang import reaching_rail
 from .base import Reads, Stage, View
 from .carrying import carried_on
 from .s07_retrieval import SETTING, retrieve
@@ -152,6 +153,8 @@ class _Seating:
             self._left(item, standing, carriers)
             return
         proxy = self._line(seated.proxy, standing)
+        carrier = carriers.proxies[proxy.parent or ""]
+        proxy = reaching_rail(proxy, carrier, self.shapes.get(carrier.id, ()))
         carriers.add(proxy)
         self._place(proxy)
         self._note(item, seated, proxy)

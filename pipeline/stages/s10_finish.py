@@ -35,6 +35,7 @@ from ..layout.hand import apply_hand_edits
 from ..light.albedo import room_albedo
 from ..light.colour_match import matched_tint
 from ..light.decide import Decision, decide
+from ..light.developed import tone_of
 from ..light.exposure import matched
 from ..light.glowing import switched
 from ..light.lamps import is_lamp
@@ -45,7 +46,7 @@ from ..light.photograph import stops_for
 from ..light.space import Space, space_of
 from ..light.standing import as_it_stands, with_former_fixes
 from ..light.tint import background_light, light_tint
-from ..light.tone import LOOK, TRANSFORM
+from ..light.tone import LOOK, NEUTRAL, TRANSFORM
 from ..light.upper_faces import with_upper_faces
 from ..light.views import EYES, TOP, cut_height, eye_cameras, top_camera
 from ..materials.tops import top_colour
@@ -150,18 +151,23 @@ def _corrected(view: View, text: str, pictures: frozenset[str] | None) -> tuple[
 
 
 def _places(view: View, space: Space, calibration: Calibration) -> Places | None:
-    """Floor and walls in the picture; None for a drawn plan, whose brightness says nothing."""
+    """Floor and walls in the picture, as the view transform is to show them; None for a drawn plan, whose light says nothing."""
     if view.need(SceneAnalysis).view == "plan":
         return None
-    places = visible_places(space, calibration.camera, view.reference)
+    places = visible_places(space, calibration.camera, view.reference, _led_back(tone_of(view.reference)))
     return places if len(places.points) else None
+
+
+def _led_back(tone: tuple[str, str]) -> bool:
+    """Whether the colours that things had are what a view transform is to show: else it makes the picture's of them."""
+    return tone[0] == NEUTRAL
 
 
 def _tops_seen(view: View, layout: Layout) -> Floats | None:
     """Linear colour of the walls' upper faces in the picture; None for a drawn plan, or where it does not show them."""
     if view.need(SceneAnalysis).view == "plan":
         return None
-    return top_colour(layout, view.need(Calibration).camera, small(view.reference, meant=True))
+    return top_colour(layout, view.need(Calibration).camera, small(view.reference, _led_back(tone_of(view.reference))))
 
 
 def _shining(view: View, calibration: Calibration, lamps: Sequence[ProxyLine], places: Places | None) -> list[str]:
@@ -206,18 +212,19 @@ def _finished(
     layout = space.layout
     style = view.recall(RoomStyle)
     shapes = _shapes_of(decision.lamps, record)
+    transform, look = tone_of(view.reference) if places is not None else (TRANSFORM, LOOK)
     tint = light_tint(style.gains if style is not None and places is not None else None)
     lit = make_lights(
         space, decision.style, shapes, decision.lamps, decision.windows, decision.sun, tint, decision.warmth
     )
-    own_lights = levelled(space, [*layout.lights, *lit.lights], lit.world.strength, places, TRANSFORM, LOOK)
-    own_lights, world = _in_colour(layout, record, own_lights[len(layout.lights) :], lit.world, places, tint)
+    own_lights = levelled(space, [*layout.lights, *lit.lights], lit.world.strength, places, transform, look)
+    own_lights, world = _in_colour(layout, record, own_lights[len(layout.lights) :], lit.world, places, tint, transform)
     lights = [*layout.lights, *own_lights]
-    exposure, brightness = matched(space, lights, world.strength, places, TRANSFORM, LOOK)
+    exposure, brightness = matched(space, lights, world.strength, places, transform, look)
     seen = surround(view.reference) if places is not None else None
-    sky = world.model_copy(update={"background": background_light(seen, decision.style, exposure, TRANSFORM, LOOK)})
+    sky = world.model_copy(update={"background": background_light(seen, decision.style, exposure, transform, look)})
     cut = cut_height(space)
-    shown = ViewLine(id="view", exposure=exposure, transform=TRANSFORM, look=LOOK, ceiling=space.height, cut=cut)
+    shown = ViewLine(id="view", exposure=exposure, transform=transform, look=look, ceiling=space.height, cut=cut)
     taken = {line.id for name in ("proxies", *LISTS) for line in getattr(layout, name)} - {TOP, *EYES}
     names = tuple(name if name not in taken else f"{name}_view" for name in EYES)
     eyes, coverage = eye_cameras(space, names)
@@ -233,14 +240,20 @@ def _finished(
 
 
 def _in_colour(
-    layout: Layout, record: Record, own: Sequence[LightLine], world: WorldLine, places: Places | None, tint: Metres3
+    layout: Layout,
+    record: Record,
+    own: Sequence[LightLine],
+    world: WorldLine,
+    places: Places | None,
+    tint: Metres3,
+    transform: str,
 ) -> tuple[list[LightLine], WorldLine]:
     """The lights and the sky with the daylight in the colour that makes floor and walls those of the picture."""
     if places is None:
         return list(own), world
     spaces = [space_of(layout, room_albedo(record, of)) for of in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))]
     tinted = frozenset(light.id for light in own if light.color == tint)
-    better = matched_tint(spaces, [*layout.lights, *own], world, tinted, places, tint)
+    better = matched_tint(spaces, [*layout.lights, *own], world, tinted, places, tint, transform)
     lights = [light.model_copy(update={"color": better}) if light.id in tinted else light for light in own]
     return lights, world.model_copy(update={"color": better})
 

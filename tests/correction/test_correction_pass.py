@@ -100,6 +100,16 @@ def test_the_smaller_of_two_that_run_through_each_other_moves_just_off_the_large
     assert centre(result.text, "stool") == pytest.approx((2.001, 0.1, 0.225), abs=2e-3)
 
 
+def test_cushions_pressed_together_stay_as_they_were_laid_and_one_within_another_does_not() -> None:
+    def cushions(apart: float) -> str:
+        line = 'proxy("{0}", "cushion", centre=({1}, 0, {4}), size=(0.4, 0.3, {5}), yaw={2}, {3})\n'
+        on = 'placement="surface", parent="table"'
+        return room(TABLE, line.format("a", 1.0, 0, on, 0.78, 0.16), line.format("b", 1.0 + apart, 8, on, 0.77, 0.14))
+
+    assert not find_faults(cushions(0.3), Options())
+    assert [fault.kind for fault in find_faults(cushions(0.1), Options())] == ["overlap"]
+
+
 def test_a_chair_under_a_table_does_not_run_through_it_though_their_boxes_do() -> None:
     table = 'def made(size):\n    w, d, h = size\n    return [part("top", box((w, d, 0.04), at=(0, 0, h - 0.02)), ' \
             'material="wood"), part("leg", box((0.06, 0.06, h - 0.04), at=(0.5, 0, (h - 0.04) / 2)), material="wood")]\n'  # fmt: skip

@@ -17,7 +17,7 @@ from code_as_room.pipeline.light.exposure import GLOSS
 from code_as_room.pipeline.light.lights import Lit, make_lights
 from code_as_room.pipeline.light.measure import Places, visible_places
 from code_as_room.pipeline.light.space import Space, space_of
-from code_as_room.pipeline.light.tone import AGX, NEUTRAL, coloured_light
+from code_as_room.pipeline.light.tone import NEUTRAL, coloured_light
 from code_as_room.pipeline.picture import ReferencePicture
 from code_as_room.pipeline.program.prelude.kelvin import light_colour
 from hypothesis import given, settings
@@ -70,7 +70,7 @@ def test_the_colour_that_made_a_picture_is_found(true: Metres3, start: Metres3, 
     spaces = spaces_of(floor, walls)
     places = shown_by(spaces, lit_with(true), visible_places(spaces[1], CAMERA, grey_picture()))
     lit = lit_with(start)
-    found = matched_tint(spaces, lit.lights, lit.world, tinted(lit, start), places, start, AGX)
+    found = matched_tint(spaces, lit.lights, lit.world, tinted(lit, start), places, start, "Standard")
     assert found == pytest.approx(true, abs=0.02)
 
 
@@ -82,7 +82,7 @@ def test_colour_that_an_orange_floor_throws_is_not_counted_twice() -> None:
         spaces, lit = spaces_of(floor, grey), lit_with(white)
         places = visible_places(spaces[1], CAMERA, grey_picture())
         walls = replace(places.only(places.is_wall), colours=np.tile(grey, (int(places.is_wall.sum()), 1)))
-        found.append(matched_tint(spaces, lit.lights, lit.world, tinted(lit, white), walls, white, AGX))
+        found.append(matched_tint(spaces, lit.lights, lit.world, tinted(lit, white), walls, white, "Standard"))
     beside_grey, beside_orange = found
     assert beside_orange[2] > beside_grey[2] + 0.05 and beside_orange[0] < beside_grey[0] - 0.02
 

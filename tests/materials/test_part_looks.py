@@ -61,6 +61,12 @@ def test_a_programs_own_colour_stays_where_something_else_was_measured() -> None
     assert found == {"wood #C7AB8D": "C9AE90"}
 
 
+def test_what_is_white_stays_white_in_the_shade_and_what_is_grey_does_not_turn_white() -> None:
+    duvet = [Cell("body", "linen #F3F1EC", 0.9), Cell("hem", "linen #EFECE6", 0.1)]
+    assert "linen #F3F1EC" not in part_colours(duvet, described("", ("D4D6D3", 1.0)))
+    assert part_colours(duvet, described("", ("CDB79E", 1.0))) == {"linen #F3F1EC": "CDB79E"}  # it is beige
+
+
 def test_hardly_seen_things_and_brown_leaves_keep_their_colours() -> None:
     assert part_colours([Cell("a", "fabric", 1.0)], described("", ("3F6B52", 1.0), seen=0.1)) == {}
     assert part_colours([Cell("leaf", "foliage", 1.0)], described("", ("8A6A4A", 1.0))) == {}

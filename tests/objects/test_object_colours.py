@@ -11,7 +11,15 @@ from code_as_room.pipeline.artifacts.camera import CameraModel
 from code_as_room.pipeline.artifacts.common import ImageBox
 from code_as_room.pipeline.artifacts.layout import Layout, ProxyLine, RoomLine
 from code_as_room.pipeline.artifacts.objects import MeasuredColour, ObjectDescription
-from code_as_room.pipeline.objects.colours import ColourMeter, clean_code, colour_distance, dominant, from_code
+from code_as_room.pipeline.objects.colours import (
+    BRIGHTEST,
+    ColourMeter,
+    as_paint,
+    clean_code,
+    colour_distance,
+    dominant,
+    from_code,
+)
 from code_as_room.pipeline.objects.tinting import tints_for
 from code_as_room.pipeline.picture import ReferencePicture, read_picture
 from PIL import Image, ImageDraw
@@ -95,6 +103,17 @@ def test_warm_light_is_taken_out() -> None:
     plain = np.ptp(from_code(measured(in_light(1, 0.94, 0.86), table)[0][0].code))
     raw = np.ptp(from_code("908778"[:6]))
     assert plain < 0.6 * raw
+
+
+def test_pale_colours_keep_their_hue_when_they_are_brought_to_neutral_light() -> None:
+    pink, burnt = np.array((0.9, 0.72, 0.66)), np.array((0.99, 0.97, 0.95))
+    gains = np.array((1.3, 1.35, 1.4))
+    paint = as_paint(pink, gains)
+    assert paint.max() == pytest.approx(BRIGHTEST)
+    assert np.allclose(paint / paint.max(), pink * gains / (pink * gains).max())
+    assert as_paint(burnt, gains).tolist() == [1.0, 1.0, 1.0]
+    dark = np.array((0.2, 0.3, 0.1))
+    assert np.allclose(as_paint(dark, gains), dark * gains)
 
 
 def test_a_round_thing_is_not_measured_as_the_floor_round_it() -> None:

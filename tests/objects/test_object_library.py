@@ -123,6 +123,15 @@ def test_alike_chairs_are_one_and_a_patterned_one_is_another() -> None:
     assert alike(chairs, known) == {"a": "a", "b": "a", "c": "a", "d": "d", "e": "e"}
 
 
+def test_two_rows_of_books_or_clothes_are_never_copies() -> None:
+    rows = [
+        proxy(kind, (0.6, 0.25, 0.3)).model_copy(update={"id": f"{kind}_{n}"})
+        for kind in ("row of books", "clothes")
+        for n in (1, 2)
+    ]
+    assert all(name == first for name, first in alike(rows, Descriptions()).items())
+
+
 def room_text(size: tuple[float, float, float] = (0.5, 0.5, 0.9)) -> tuple[Layout, str]:
     chair = proxy("chair", size)
     layout = Layout(room=ROOM, proxies=[chair])

@@ -14,9 +14,9 @@ from code_as_room.pipeline.scene.arrays import mesh_arrays
 from code_as_room.pipeline.scene.meshes import is_hand_made, write_arrays
 
 
-def written(*shapes: Any) -> Any:
+def written(*shapes: Any, furniture: bool = False) -> Any:
     mesh = bpy.data.meshes.new("test")
-    write_arrays(mesh, mesh_arrays(list(shapes)), "table", "digest")
+    write_arrays(mesh, mesh_arrays(list(shapes), furniture=furniture), "table", "digest")
     return mesh
 
 
@@ -77,3 +77,16 @@ def test_nothing_and_outlines_alone_can_be_written() -> None:
     outline = Shape(np.zeros((2, 3)), (), extra={"edges": ((0, 1),)})
     assert len(written(outline).edges) == 1
     assert len(written().vertices) == 0
+
+
+def test_boards_in_one_plane_are_drawn_apart_and_the_last_lies_on_top() -> None:
+    """Cycles renders faces that lie in one place black: each shades the other."""
+    post, rail = solids.box((0.1, 0.04, 1.0), at=(0, 0, 0.5)), solids.box((0.8, 0.04, 0.1), at=(0.3, 0, 0.95))
+    mesh = written(post, rail, furniture=True)
+    points = np.array([vertex.co for vertex in mesh.vertices])
+    first, last = points[: len(post.vertices)], points[len(post.vertices) :]
+    assert np.allclose(last, rail.vertices, atol=1e-6)  # what is seen of an object is where it was put
+    assert first[:, 1].min() - last[:, 1].min() == pytest.approx(5e-5, abs=1e-6)
+    many = written(*(solids.box((0.002, 1, 1)) for _ in range(40)), furniture=True)
+    points = np.array([vertex.co for vertex in many.vertices])
+    assert np.ptp(points[:, 0]) > 0.0018 and 1.0 - np.ptp(points[:8, 1]) < 0.0016

@@ -8,8 +8,8 @@ from pathlib import Path
 import bpy
 import numpy as np
 import pytest
-from code_as_room.pipeline.light.developed import developed, wash
-from code_as_room.pipeline.light.tone import AGX, MEDIUM_HIGH, linear
+from code_as_room.pipeline.light.developed import developed, tone_of, wash
+from code_as_room.pipeline.light.tone import AGX, MEDIUM_HIGH, NEUTRAL, coloured_light, linear
 from code_as_room.pipeline.picture import ReferencePicture, load_picture
 from PIL import Image
 
@@ -81,3 +81,16 @@ def test_a_picture_with_nothing_white_in_it_tells_nothing(tmp_path: Path) -> Non
     Image.fromarray(boards).save(tmp_path / "boards.png")
     picture = load_picture(tmp_path / "boards.png")
     assert np.array_equal(developed(picture), picture.pixels())
+
+
+def test_a_room_is_shown_as_its_picture_was(clean: None, tmp_path: Path) -> None:
+    """Shown through another transform, the colours that were led back would be stronger than anything in the picture."""
+    base = linear(np.array(PAINTS) / 255.0)
+    picture = shown_in_blender(base * LIGHT, AGX, MEDIUM_HIGH, tmp_path / "agx.png")
+    assert tone_of(picture) == (AGX, MEDIUM_HIGH)
+    again = shown_in_blender(
+        coloured_light(linear(patches(picture.pixels()) / 255.0), AGX), *tone_of(picture), tmp_path / "again.png"
+    )
+    assert np.abs(patches(again.pixels()) - patches(picture.pixels())).mean() < 8
+    full = linear(np.array(((4, 4, 5), *PAINTS, (252, 252, 252))) / 255.0)
+    assert tone_of(shown_in_blender(full, "Standard", "None", tmp_path / "standard.png")) == (NEUTRAL, "")

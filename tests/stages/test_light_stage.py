@@ -11,10 +11,11 @@ from code_as_room.pipeline.artifacts.correction import FAULT_KINDS, CorrectionRe
 from code_as_room.pipeline.artifacts.layout import Layout, LayoutEdit, LayoutProgram
 from code_as_room.pipeline.artifacts.light import LightPlan
 from code_as_room.pipeline.correction.correct import correct
+from code_as_room.pipeline.light.tone import AGX, MEDIUM_HIGH
 from code_as_room.pipeline.program.evaluate import evaluate
 from code_as_room.pipeline.program.lines import parse_layout, print_line
 from code_as_room.pipeline.run import Run
-from code_as_room.pipeline.stages import all_stages
+from code_as_room.pipeline.stages import all_stages, s10_finish
 from code_as_room.pipeline.stages.s07_surfaces import STAGE as BEFORE
 from code_as_room.pipeline.stages.s10_finish import CORRECTIONS_OFF, STAGE
 
@@ -121,3 +122,15 @@ def test_lights_that_the_artist_changed_or_removed_stay_so(run: Run, scene: Any)
     assert after[light.id].energy == 12.5 and after["mine"].energy == 3.0
     assert finished(run).views[0].exposure == 1.25
     assert "eye_2" not in {c.id for c in finished(run).cameras}
+
+
+def test_a_picture_from_behind_a_filmic_transform_makes_a_room_behind_it(
+    run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(s10_finish, "tone_of", lambda picture: (AGX, MEDIUM_HIGH))
+    run.run_stage(STAGE)
+    shown = finished(run).views[0]
+    assert (shown.transform, shown.look) == (AGX, MEDIUM_HIGH)
+    # Floor and walls are as bright on the screen as the picture's, under that transform.
+    for brightness in plan(run).brightness:
+        assert brightness.after == pytest.approx(brightness.picture, abs=0.12)
