@@ -25,6 +25,8 @@ _ODD = 18.0
 """CIEDE2000 by which a material program may miss the measured colour without a reason."""
 _NEAR = 6.0
 """CIEDE2000 within which the palette's colour stands for a measured one."""
+_SAID = 2.0
+"""CIEDE2000 within which a part has the very colour that the palette says."""
 
 
 @dataclass
@@ -33,11 +35,13 @@ class Answered:
 
     Attributes:
         findings: what could not be used; at most one sentence for each object.
+        seen: the colour that the picture shows of an entry of the palette, six sRGB digits, by its name.
     """
 
     parts: dict[str, list[PartMaterialReply]] = field(default_factory=dict)
     palette: dict[str, PaletteReply] = field(default_factory=dict)
     findings: list[Finding] = field(default_factory=list)
+    seen: dict[str, str] = field(default_factory=dict)
 
     @classmethod
     def of(cls, replies: Sequence[MaterialsReply | None], known: Sequence[str]) -> Answered:
@@ -78,6 +82,15 @@ class Answered:
             if found is not None:
                 return found
         return next((p for p in said if p.part in ("", "all")), None)
+
+    def entry_of(self, identifier: str, cell: Cell) -> tuple[str, str]:
+        """The name of the palette's entry that a part was said to be of, and its colour, six sRGB digits; "" for none."""
+        said = self.about(identifier, cell)
+        if said is None or said.veto.strip() or said.program.strip():
+            return "", ""
+        name = said.material.strip().lower()
+        entry = self.palette.get(name)
+        return name, clean_code(entry.color) if entry is not None else ""
 
     def choice(self, identifier: str, cell: Cell, category: str, fallback: Choice) -> Choice:
         """What a part is made of by the answer, or the fallback with a finding; its colour stays unless vetoed."""
@@ -122,8 +135,12 @@ class Answered:
         if said.veto.strip() and written:
             return calm(written)
         shared = clean_code(entry.color) if entry is not None else ""
-        if shared and (said.veto.strip() or difference(shared, fallback.code) < _NEAR):
+        if shared and said.veto.strip():
             return calm(shared)
+        seen = self.seen.get(said.material.strip().lower(), shared)
+        # What the picture does not show has the colour that was said.
+        if shared and (difference(seen, fallback.code) < _NEAR or difference(shared, fallback.code) < _SAID):
+            return calm(seen)
         if fallback.source == "usual" and (written or shared):
             # Nothing was measured of it: the model's word is better than what such things usually are.
             return calm(written or shared)

@@ -21,6 +21,7 @@ from .choice import Choice
 from .colours import part_colours, uncovered
 from .difference import difference
 from .parts import Cell, cells_of
+from .sameness import Sight, seen_colour
 from .sharing import finish_of, merged, named
 from .usual import usual
 
@@ -35,12 +36,14 @@ class Deciding:
     Attributes:
         cells: the parts of each object, surfaces under their own names; choices: what each of them is made of.
         answered: what the model said; empty without an answer.
+        measured: of each object, the colours that the picture has for its materials.
     """
 
     layout: Layout
     cells: dict[str, list[Cell]]
     choices: dict[str, list[Choice]]
     answered: Answered = field(default_factory=Answered)
+    measured: dict[str, dict[str, str]] = field(default_factory=dict)
 
     @classmethod
     def begin(
@@ -60,6 +63,7 @@ class Deciding:
         alike = _alike(layout, descriptions, functions)
         cells: dict[str, list[Cell]] = {name: [Cell("", name, 1.0)] for name in shell}
         choices = {name: [choice] for name, choice in shell.items()}
+        measured: dict[str, dict[str, str]] = {}
         weighed: dict[tuple[bool, tuple[int, ...]], list[Cell]] = {}
         for proxy in layout.proxies:
             made = shapes.get(proxy.id)
@@ -72,17 +76,18 @@ class Deciding:
             cells[proxy.id] = list(weighed[key])
             described = alike[proxy.id]
             shown = uncovered(cells[proxy.id], made, covers_of(proxy, layout))
-            colours = part_colours(shown, described)
+            colours = measured[proxy.id] = part_colours(shown, described)
             family = category_family(proxy.category)
             choices[proxy.id] = [
                 usual(cell, described, proxy.category, family, colours.get(cell.material, cell.code))
                 for cell in cells[proxy.id]
             ]
-        return cls(layout, cells, choices)
+        return cls(layout, cells, choices, measured=measured)
 
     def take(self, answered: Answered) -> None:
         """Let a model's answer decide where it can be used."""
         self.answered = answered
+        answered.seen = {name: seen_colour(*of) for name, of in self._sights(answered).items()}
         fittings = [name for name in SURFACES if name in answered.parts and name not in self.cells]
         present = fittings_of(self.layout)
         for name in [*fittings, *(i for i in answered.parts if i in present and i not in self.cells)]:
@@ -95,6 +100,18 @@ class Deciding:
                 answered.choice(name, cell, proxy.category if proxy is not None else "", choice)
                 for cell, choice in zip(cells, self.choices[name], strict=True)
             ]
+
+    def _sights(self, answered: Answered) -> dict[str, tuple[str, list[Sight]]]:
+        """Of each material of the palette its colour, and what was measured of the parts that are of it."""
+        found: dict[str, tuple[str, list[Sight]]] = {}
+        for proxy in self.layout.proxies:
+            known = self.measured.get(proxy.id, {})
+            for cell in self.cells.get(proxy.id, ()):
+                name, said = answered.entry_of(proxy.id, cell)
+                if said and cell.material in known:
+                    weight = proxy.size[0] * proxy.size[1] * cell.share
+                    found.setdefault(name, (said, []))[1].append(Sight(known[cell.material], weight))
+        return found
 
     def _role(self, name: str) -> str:
         """Which part of a surface its look is for: windows keep their glass, and doors their handles."""
