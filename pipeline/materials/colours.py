@@ -7,6 +7,8 @@ import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from ..artifacts.objects import MeasuredColour, ObjectDescription
 from ..objects.lying_on import COVER
 from ..objects.tinting import FIXED, calm
@@ -23,9 +25,10 @@ _SHOWN = 0.02
 _NEAR = 14.0
 """CIEDE2000 within which a program's own colour and a measured one are taken for the same thing."""
 _MOST = 4
-_WHITE, _SHADED, _GREYISH = 86.0, 72.0, 9.0
-"""CIELAB lightness of white things, and of those that stand in the room's shade, and the chroma of both: white things keep the
-white that they were given, or each fold of a bed and each cushion would have a tint of its own, by where its shadow fell."""
+_WHITE, _SHADED, _GREYISH, _CAST = 86.0, 72.0, 9.0, 15.0
+"""CIELAB lightness of white things, and of those that stand in the room's shade; the chroma of white, and of white beside a
+coloured floor: white things keep the white that they were given, or each fold of a bed and each side of a wardrobe would have a tint
+of its own, by where its shadow fell."""
 
 
 def uncovered(cells: Sequence[Cell], shapes: Sequence[Shape], covers: Sequence[Shape]) -> list[Cell]:
@@ -95,9 +98,9 @@ def _cost(
     return cost + 0.8 * sum(c.share for c in colours if c not in [given for _, given in pairs])
 
 
-def _is_white(code: str, least: float) -> bool:
+def _is_white(code: str, least: float, most: float) -> bool:
     light, a, b = lab_of(code)
-    return light > least and (a * a + b * b) ** 0.5 < _GREYISH
+    return light > least and float(np.hypot(a, b)) < most
 
 
 def _may(cell: Cell, colour: MeasuredColour, share: float) -> bool:
@@ -109,6 +112,6 @@ def _may(cell: Cell, colour: MeasuredColour, share: float) -> bool:
         return False
     if not cell.code:
         return True
-    if _is_white(cell.code, _WHITE) and _is_white(colour.code, _SHADED):
+    if _is_white(cell.code, _WHITE, _GREYISH) and _is_white(colour.code, _SHADED, _CAST):
         return False
     return difference(cell.code, colour.code) < (2 * _NEAR if share > 0.6 and colour.share > 0.6 else _NEAR)

@@ -18,6 +18,7 @@ from .shape import Shape
 _FRAME = 0.05  # metres: width of a frame's members
 _PROUD = 0.01  # metres that a frame stands out of the wall on both sides
 _LEAF = 0.04  # metres: thickness of a door leaf
+_SILL = 0.004  # metres that a threshold is higher than the floor; a leaf goes over it
 _PANEL = 0.006  # metres that the panels of a leaf stand out
 _PANE = 0.72  # metres: about how wide one pane of glass is
 
@@ -25,7 +26,7 @@ _PANE = 0.72  # metres: about how wide one pane of glass is
 def fitting_pieces(run: WallRun, hole: Hole, holes: list[Hole]) -> list[ShellPiece]:
     """The pieces (`ShellPiece`) for one of a wall run's holes: a door and its leaf, a window, or an outline.
 
-    A door has no head where an opening goes on above it.
+    Where an opening goes on above a door, its frame goes on with it and has no head.
     """
     dx, dy = run.direction
     x = hole.x[1] if hole.against else hole.x[0]
@@ -39,10 +40,14 @@ def fitting_pieces(run: WallRun, hole: Hole, holes: list[Hole]) -> list[ShellPie
         return [ShellPiece(shapes=[_outline(width, hole.z, faces)], **common)]
     if hole.kind == "window":
         return [ShellPiece(shapes=_window(width, hole.z, faces, room_side), **common)]
-    frame = _members(width, (hole.z[0], hole.z[1]), (min(faces) - _PROUD, max(faces) + _PROUD), sill=False)
-    if any(h.x == hole.x and h.z[0] == hole.z[1] for h in holes):
+    above = [h.z[1] for h in holes if h.x == hole.x and h.z[0] == hole.z[1]]
+    top = max(above, default=hole.z[1])
+    frame = _members(width, (hole.z[0], top), (min(faces) - _PROUD, max(faces) + _PROUD), sill=False)
+    if above:
         frame.pop()
     member = min(_FRAME, width / 5)
+    low, high = (member, min(faces), hole.z[0] - 0.01), (width - member, max(faces), hole.z[0] + _SILL)
+    frame.append(_block(low, high, "threshold", "door"))
     opened = min(max(float(hole.line.get("open", 0.0)), -180.0), 180.0)
     # A leaf lies flush with the face that it opens towards, else it would turn within the wall.
     leaf_side = -room_side if opened < 0.0 else room_side
