@@ -12,10 +12,12 @@ _CLOTHS = frozenset({
     "throw", "blanket", "duvet", "comforter", "quilt", "bedspread", "coverlet", "bedding", "plaid", "afghan", "sheet",
     "tablecloth", "runner", "cloth", "placemat", "doily", "covers",
 })  # fmt: skip
-_BUNDLED = frozenset({"folded", "rolled", "stack", "stacked", "pile", "basket", "pillow", "pillows", "cushion", "box"})
+_BUNDLED = frozenset({"rolled", "stack", "stacked", "pile", "basket", "pillow", "pillows", "cushion", "box"})
 """What is said of cloths that do not lie spread out, and of things that only are called after cloths."""
-MOST_HEIGHT = 0.6
-"""Of its shorter side; what is higher is a heap, or hangs."""
+_FOLDED = 0.15
+"""Metres up to which what is folded is a stack; what is higher is folded once or twice and hangs over an edge."""
+MOST_HEIGHT = 1.0
+"""Of its shorter side; what is higher is a heap, or hangs from something."""
 
 
 def is_lying_cloth(proxy: ProxyLine) -> bool:
@@ -24,9 +26,9 @@ def is_lying_cloth(proxy: ProxyLine) -> bool:
         return False
     words = set(re.findall(r"[a-z]+", f"{proxy.category} {proxy.label}".lower()))
     kind = re.findall(r"[a-z]+", proxy.category.lower())
-    return (
-        bool(_CLOTHS.intersection(kind)) and not words & _BUNDLED and proxy.size[2] <= MOST_HEIGHT * min(proxy.size[:2])
-    )
+    if not _CLOTHS.intersection(kind) or words & _BUNDLED or ("folded" in words and proxy.size[2] <= _FOLDED):
+        return False
+    return proxy.size[2] <= MOST_HEIGHT * min(proxy.size[:2])
 
 
 def furnish_line(proxy: ProxyLine, function: str) -> str:

@@ -12,6 +12,7 @@ from ..artifacts.objects import Furnishing
 from ..artifacts.replies import AuxiliaryPlacementReply, AuxiliaryReply
 from ..errors import RoomError
 from ..layout import auxiliary as place
+from ..layout.curtains import hung_from_rods
 from ..layout.hand import apply_hand_edits, name_now, place_edited
 from ..layout.initial import is_major
 from ..layout.pins import pinned, with_known_parent
@@ -162,6 +163,7 @@ def run(view: View) -> StageRun:
     layout, late = apply_hand_edits(placing.layout, view.hand_edits, len(view.hand_edits))
     if standing is not None:
         layout = pinned(layout, standing, view.locked - {p.id for p in layout.proxies}, names.values())
+    layout = hung_from_rods(layout, {*view.locked, *kept, *(edit.id for edit in view.hand_edits)})
     unusable = [f for f in early if f.severity != "warning" or layout.proxy(f.about) is None]
     text = furnished(view, layout)
     yield Tell("Building the room", 2, 2)
