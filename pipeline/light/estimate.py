@@ -100,6 +100,8 @@ def _direct(
         if light.kind == "area":
             radiance = light.energy / (math.pi * spread)
             value = radiance * spread * facing * np.maximum(-ways @ aim(light), 0.0) / length**2
+            # However near a light is, no more can arrive than if it filled all that a place sees.
+            value = np.minimum(value, math.pi * radiance)
         else:
             value = light.energy / (4 * math.pi) * facing / np.maximum(length, 0.05) ** 2
         lit = value > 0

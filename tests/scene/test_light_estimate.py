@@ -81,3 +81,14 @@ def test_the_floor_is_as_bright_as_cycles_makes_it(case: str, tmp_path: Path) ->
     up = np.tile((0.0, 0.0, 1.0), (len(grid), 1))
     found = irradiance(space, room.lights, 0.0, grid, up).lights.sum(axis=0).mean() * ALBEDO / math.pi
     assert abs(math.log2(found / truth)) < 0.3  # of a stop
+
+
+def test_a_panel_that_nearly_touches_the_walls_makes_no_single_place_count_for_all() -> None:
+    """Rays that end a hair from a light found a thousand times what can arrive, and the whole room was taken for brighter."""
+    wide = LightLine(id="l", kind="area", at=(0, 0, 2.485), energy=60, size=3.96, size_y=2.96)
+    space = space_of(layout(wide), {"floor": ALBEDO, "walls": ALBEDO, "ceiling": ALBEDO})
+    x, y = np.meshgrid(np.linspace(-1.6, 1.6, 21), np.linspace(-1.1, 1.1, 21))
+    places = np.stack([x.ravel(), y.ravel(), np.zeros(x.size)], axis=1)
+    arriving = irradiance(space, [wide], 0.0, places, np.tile((0.0, 0.0, 1.0), (len(places), 1)))
+    radiance = 60 / (math.pi * 3.96 * 2.96)
+    assert arriving.lights.max() < 2.5 * radiance
