@@ -10,6 +10,8 @@ from dataclasses import replace
 import numpy as np
 
 from ..artifacts.objects import MeasuredColour, ObjectDescription
+from ..light.tone import luminance
+from ..objects.colours import from_code, to_code
 from ..objects.lying_on import COVER
 from ..objects.tinting import FIXED, calm
 from ..program.prelude.palette import ROLE_COLOURS
@@ -27,8 +29,8 @@ _NEAR = 14.0
 _MOST = 4
 _WHITE, _SHADED, _GREYISH, _CAST = 86.0, 72.0, 9.0, 15.0
 """CIELAB lightness of white things, and of those that stand in the room's shade; the chroma of white, and of white beside a
-coloured floor: white things keep the white that they were given, or each fold of a bed and each side of a wardrobe would have a tint
-of its own, by where its shadow fell."""
+coloured floor. White things keep the hue of the white that they were given, or each fold of a bed and each side of a wardrobe would
+have a tint of its own, by where its shadow fell."""
 
 
 def uncovered(cells: Sequence[Cell], shapes: Sequence[Shape], covers: Sequence[Shape]) -> list[Cell]:
@@ -65,7 +67,7 @@ def part_colours(cells: Sequence[Cell], described: ObjectDescription) -> dict[st
     materials = sorted(shares, key=lambda m: -shares[m])[:_MOST]
     total = sum(shares[m] for m in materials)
     best = min(_pairings(materials, colours, shares), key=lambda pairs: _cost(pairs, shares, total, own, colours))
-    return {m: calm(c.code) for m, c in best if _may(own[m], c, shares[m] / total)}
+    return {m: calm(_as_seen(own[m], c)) for m, c in best if _may(own[m], c, shares[m] / total)}
 
 
 def _pairings(
@@ -98,6 +100,18 @@ def _cost(
     return cost + 0.8 * sum(c.share for c in colours if c not in [given for _, given in pairs])
 
 
+def _as_seen(cell: Cell, colour: MeasuredColour) -> str:
+    """The measured colour; of white things the white that they were given, half as much darker as it was measured."""
+    if not _is_shaded_white(cell, colour):
+        return colour.code
+    own, seen = from_code(cell.code), from_code(colour.code)
+    return to_code(own * (0.5 + 0.5 * min(1.0, float(luminance(seen)) / float(luminance(own)))))
+
+
+def _is_shaded_white(cell: Cell, colour: MeasuredColour) -> bool:
+    return bool(cell.code) and _is_white(cell.code, _WHITE, _GREYISH) and _is_white(colour.code, _SHADED, _CAST)
+
+
 def _is_white(code: str, least: float, most: float) -> bool:
     light, a, b = lab_of(code)
     return light > least and float(np.hypot(a, b)) < most
@@ -112,6 +126,6 @@ def _may(cell: Cell, colour: MeasuredColour, share: float) -> bool:
         return False
     if not cell.code:
         return True
-    if _is_white(cell.code, _WHITE, _GREYISH) and _is_white(colour.code, _SHADED, _CAST):
-        return False
+    if _is_shaded_white(cell, colour):
+        return True
     return difference(cell.code, colour.code) < (2 * _NEAR if share > 0.6 and colour.share > 0.6 else _NEAR)
