@@ -36,6 +36,7 @@ _KEPT = 75.0
 """Per cent of the picture that are darker than what keeps its brightness."""
 
 
+@functools.lru_cache(maxsize=2)
 def wash(picture: ReferencePicture) -> float:
     """How much a picture looks like one that was shown through a filmic transform: 0 not at all, 1 certainly."""
     image = Image.fromarray(picture.pixels())
