@@ -15,9 +15,11 @@ from .making import model
 from .programs import piece_program
 from .said import Said
 from .statements import Statement
-from .things import Arguments, Fixed, RoomSaid, Thing, read_fixed, read_light, read_room, read_thing
+from .things import SMALL_ON_FLOOR, Arguments, Fixed, RoomSaid, Thing, read_fixed, read_light, read_room, read_thing
 
 MOST_THINGS = 300
+_FLAT = 0.05
+"""Metres that a rug is high at most."""
 _ORDERS = {
     "room": ("size", "floor", "seen", "top"),
     "wall": ("id", "start", "end", "height", "thickness"),
@@ -104,9 +106,19 @@ def _thing(draft: Said, found: Thing, notes: list[str]) -> None:
     name = draft.new_id(found.id, "object")
     if name != found.id:
         notes.append(f"It is called {name}.")
-    thing = replace(found, id=name, parent=_parent(draft, found.parent))
+    thing = _off_rug(draft, replace(found, id=name, parent=_parent(draft, found.parent)))
     draft.things[name] = thing
     model(draft, thing)
+
+
+def _off_rug(draft: Said, thing: Thing) -> Thing:
+    """What stands on a rug stands on the floor: with the rug as its carrier it would count for a small thing on a table."""
+    rug = draft.things.get(thing.parent or "")
+    if rug is None or thing.placement != "surface" or rug.placement != "floor" or rug.size[2] > _FLAT:
+        return thing
+    small = max(thing.size[:2]) < SMALL_ON_FLOOR
+    at = (*thing.at[:2], 0.0 if thing.at[2] <= 2 * _FLAT else thing.at[2])
+    return replace(thing, placement="floor", parent=None, at=at, salience="minor" if small else "major")
 
 
 def _parent(draft: Said, written: str | None) -> str | None:

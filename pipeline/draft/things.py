@@ -14,6 +14,8 @@ from ..errors import ProgramError
 
 Box = tuple[float, float, float, float]
 MOST_METRES = 100.0
+SMALL_ON_FLOOR = 0.4
+"""Metres of its longer side below which a thing on the floor is a small one."""
 _PLACEMENTS: dict[str, Placement] = {
     "floor": "floor", "ground": "floor", "standing": "floor", "wall": "wall", "hung": "wall", "on_wall": "wall",
     "wall_mounted": "wall", "ceiling": "ceiling", "hanging": "ceiling", "pendant": "ceiling", "surface": "surface",
@@ -296,7 +298,7 @@ def read_thing(given: Arguments) -> Thing:
     said = given.word("placement").lower().replace(" ", "_").replace("-", "_")
     placement = _PLACEMENTS.get(said) or ("surface" if parent and not said else "floor")
     salience = given.word("salience").lower()
-    small = placement == "floor" and max(size[:2]) < 0.4
+    small = placement == "floor" and max(size[:2]) < SMALL_ON_FLOOR
     colours = given.take("colors", "colours", "tint")
     options = given.take("options")
     found = Thing(

@@ -35,6 +35,20 @@ def test_a_twin_is_made_by_the_same_def_and_a_coloured_one_by_its_own() -> None:
     assert {s.material for s in record.furnished["table_2"]} == {"wood #A87C52"}
 
 
+def test_what_stands_on_a_rug_stands_on_the_floor_and_what_lies_on_a_table_does_not() -> None:
+    lines = (
+        "proxy('rug_1', 'rug', at=(1, 0, 0), size=(2, 1.4, 0.02))\n"
+        "proxy('chair_1', 'armchair', at=(1, 0, 0.02), size=(0.7, 0.7, 0.9), placement='surface', parent='rug_1')\n"
+        "proxy('ball_1', 'ball', at=(1.5, 0.5, 0.02), size=(0.2, 0.2, 0.2), placement='surface', parent='rug_1')\n"
+        "proxy('cup_1', 'cup', at=(0, 0, 0.7), size=(0.1, 0.1, 0.1), placement='surface', parent='table_1')\n"
+    )
+    things = read_text(ROOM + TABLE + lines + "build()\n").things
+    chair, ball, cup = (things[name] for name in ("chair_1", "ball_1", "cup_1"))
+    assert (chair.placement, chair.parent, chair.at[2], chair.salience) == ("floor", None, 0.0, "major")
+    assert (ball.placement, ball.salience) == ("floor", "minor")
+    assert (cup.placement, cup.parent) == ("surface", "table_1")
+
+
 def test_looks_in_parts_become_materials_that_find_their_look_again() -> None:
     text = (
         ROOM
