@@ -24,6 +24,8 @@ _BRIGHT = 80.0
 """Per cent of a view that are darker than what is exposed for: a wall, a bed, a worktop in the light."""
 _AS = 0.78
 """How bright that is on the screen."""
+_BRIGHTEST, _NOT_BURNT = 95.0, 0.93
+"""The same of what is brightest in it: in a dark alcove a white wall at its side is not to burn out."""
 _LEAST, _MOST = -0.5, 1.0
 _ABOVE = 2e-3  # metres
 
@@ -38,9 +40,12 @@ def stops_for(space: Space, lights: Sequence[LightLine], sky: float, camera: Cam
     points = at + ways[met] * distance[met, None] + _ABOVE * normals[met]
     arriving = irradiance(space, lights, sky, points, normals[met])
     gives = (arriving.lights.sum(axis=0) + arriving.sky) * (space.albedo_of(surface[met]) + GLOSS) / math.pi
-    now = float(np.percentile(gives, _BRIGHT)) * 2.0**view.exposure
-    wanted = float(scene_light(np.array([_AS]), view.transform, view.look)[0])
-    return round(float(np.clip(math.log2(wanted / max(now, 1e-6)), _LEAST, _MOST)), 2)
+    stops = []
+    for share, shown in ((_BRIGHT, _AS), (_BRIGHTEST, _NOT_BURNT)):
+        now = float(np.percentile(gives, share)) * 2.0**view.exposure
+        wanted = float(scene_light(np.array([shown]), view.transform, view.look)[0])
+        stops.append(math.log2(wanted / max(now, 1e-6)))
+    return round(float(np.clip(min(stops), _LEAST, _MOST)), 2)
 
 
 def _sight(camera: CameraLine) -> tuple[Floats, Floats]:

@@ -49,3 +49,17 @@ def test_the_rooms_own_exposure_counts() -> None:
     assert stops_for(space, [panel(55.0)], 0.0, eye(), VIEW) - stops_for(
         space, [panel(55.0)], 0.0, eye(), brighter
     ) == pytest.approx(0.5, abs=0.02)
+
+
+def test_a_white_wall_at_the_side_of_a_dark_alcove_does_not_burn_out() -> None:
+    def alcove(side: float) -> Space:
+        layout: Layout = rectangle(4, 3)
+        layout.proxies += [
+            thing("wardrobe_1", "wardrobe", (1.7, -0.15), (0.6, 2.7, 2.55)),
+            thing("panel_1", "panel", (0.9, 1.38), (0.6, 0.24, 2.5)),
+        ]
+        dark = dict.fromkeys(("wardrobe_1", "walls", "floor", "ceiling"), 0.12)
+        return space_of(layout, {**dark, "panel_1": side})
+
+    dark, beside_white = (stops_for(alcove(side), [panel(300.0)], 0.0, eye(), VIEW) for side in (0.12, 0.85))
+    assert dark < 1.0 and beside_white < dark - 0.6
