@@ -19,6 +19,8 @@ Ints = NDArray[np.int64]
 
 _MOST_PAIRS = 4_000_000
 """Triangle and cell pairs that are looked at in one go; larger meshes are rasterised in pieces."""
+_ASIDE = (1.3e-7, 2.1e-7)
+"""Metres that lines are beside the cells' middles: none goes through the edge of two triangles and counts for both."""
 
 
 @dataclass(frozen=True)
@@ -56,10 +58,15 @@ class Samples:
     owner: Ints
 
 
-def triangles(shapes: Sequence[Shape]) -> tuple[Floats, Ints]:
-    """All faces as triangles (T, 3, 3), and the index of the shape that each belongs to (T,)."""
+def triangles(shapes: Sequence[Shape]) -> tuple[Floats, Ints, Ints]:
+    """All faces as triangles (T, 3, 3), the index of the shape that each belongs to (T,), and of its concave face, -1 for others.
+
+    Triangles are fans: those of a concave face cover what is outside of it as well, but always an even number of times.
+    """
     corners: list[Floats] = []
     counts: list[int] = []
+    bent: list[Ints] = []
+    concave = 0
     for shape in shapes:
         flat, lengths = shape.corners
         starts = np.cumsum(lengths) - lengths
@@ -73,10 +80,24 @@ def triangles(shapes: Sequence[Shape]) -> tuple[Floats, Ints]:
                 )
                 corners.append(shape.vertices[fans.reshape(-1, 3)])
                 found += len(corners[-1])
+                turned = (
+                    _is_concave(corners[-1].reshape(length - 2, -1, 3, 3)) if length > 3 else np.zeros(1, dtype=bool)
+                )
+                names = np.where(turned, concave + np.cumsum(turned) - 1, -1)
+                bent.append(np.broadcast_to(names, (length - 2, table.shape[1])).ravel())
+                concave += int(turned.sum())
         counts.append(found)
     if not corners:
-        return np.zeros((0, 3, 3)), np.zeros(0, dtype=np.int64)
-    return np.concatenate(corners), np.repeat(np.arange(len(counts)), counts)
+        return np.zeros((0, 3, 3)), np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)
+    return np.concatenate(corners), np.repeat(np.arange(len(counts)), counts), np.concatenate(bent)
+
+
+def _is_concave(fans: Floats) -> NDArray[np.bool_]:
+    """Of faces in fans (triangles of each, faces, 3, 3): whether some triangle of a face is turned over against the whole."""
+    cross = np.cross(fans[:, :, 1] - fans[:, :, 0], fans[:, :, 2] - fans[:, :, 0])
+    whole = cross.sum(axis=0)
+    found: NDArray[np.bool_] = ((cross * whole).sum(axis=2) < -1e-9 * (whole * whole).sum(axis=1)).any(axis=0)
+    return found
 
 
 def grid_over(points: Floats, cell: float) -> Grid:
@@ -95,16 +116,20 @@ def sample(shapes: Sequence[Shape], cell: float, level: float = 0.9) -> Samples 
         cell: side of a cell in metres.
         level: the least z of a unit normal that counts as level and facing upward.
     """
-    corners, owner = triangles(shapes)
+    corners, owner, bent = triangles(shapes)
     if not len(corners):
         return None
     grid = grid_over(corners.reshape(-1, 3), cell)
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
     cross = np.cross(b - a, c - a)
+    seen = np.flatnonzero(np.abs(cross[:, 2]) > 1e-12)
+    if (bent >= 0).any():  # a concave face looks where all of its triangles together do
+        whole = np.zeros((int(bent.max()) + 1, 3))
+        np.add.at(whole, bent[bent >= 0], cross[bent >= 0])
+        cross[bent >= 0] = whole[bent[bent >= 0]]
     length = np.sqrt(cross[:, 0] ** 2 + cross[:, 1] ** 2 + cross[:, 2] ** 2)
     # Upright triangles have no extent from above; they do not take room beyond their edges' neighbours.
-    seen = np.flatnonzero(np.abs(cross[:, 2]) > 1e-12)
-    corners, owner, upward, length = corners[seen], owner[seen], cross[seen, 2], length[seen]
+    corners, owner, upward, length, bent = corners[seen], owner[seen], cross[seen, 2], length[seen], bent[seen]
     up, facing = upward > level * length, upward > 0
     a, b, c = corners[:, 0, :2], corners[:, 1, :2], corners[:, 2, :2]
     low = np.floor((np.minimum(np.minimum(a, b), c) - grid.origin) / cell - 0.5).astype(np.int64)
@@ -115,9 +140,23 @@ def sample(shapes: Sequence[Shape], cell: float, level: float = 0.9) -> Samples 
     triangle = np.concatenate([f[0] for f in found])
     cells = np.concatenate([f[1] for f in found])
     heights = np.concatenate([f[2] for f in found])
+    kept = _inside(bent[triangle], cells)
+    triangle, cells, heights = triangle[kept], cells[kept], heights[kept]
     order = np.lexsort((heights, cells))
     triangle = triangle[order]
     return Samples(grid, cells[order], heights[order], up[triangle], facing[triangle], owner[triangle])
+
+
+def _inside(bent: Ints, cells: Ints) -> Ints:
+    """Which crossings are with a face itself: of a concave one, one of an odd number in a cell, and none of an even number."""
+    odd = bent >= 0
+    if not odd.any():
+        return np.arange(len(cells))
+    at = np.flatnonzero(odd)
+    key = bent[at] * (int(cells.max()) + 1) + cells[at]
+    _, first, count = np.unique(key, return_index=True, return_counts=True)
+    found: Ints = np.sort(np.concatenate([np.flatnonzero(~odd), at[first[count % 2 == 1]]]))
+    return found
 
 
 def _parts(pairs: Ints) -> list[slice]:
@@ -139,9 +178,9 @@ def _crossings(corners: Floats, low: Ints, count: Ints, grid: Grid, part: slice)
     # What all cells of a triangle's column share is worked out once a column.
     whose = np.repeat(np.arange(len(number)), wide)
     column, deep = low[part, 0][whose] + _counted(wide), deep[whose]
-    x = grid.origin[0] + (column + 0.5) * grid.cell - ax[whose]
+    x = grid.origin[0] + _ASIDE[0] + (column + 0.5) * grid.cell - ax[whose]
     row = np.repeat(low[part, 1][whose], deep) + _counted(deep)
-    y = grid.origin[1] + (row + 0.5) * grid.cell - np.repeat(ay[whose], deep)
+    y = grid.origin[1] + _ASIDE[1] + (row + 0.5) * grid.cell - np.repeat(ay[whose], deep)
     area = np.repeat(((bx - ax) * (cy - ay) - (by - ay) * (cx - ax))[whose], deep)
     v = (np.repeat(x * (cy - ay)[whose], deep) - y * np.repeat((cx - ax)[whose], deep)) / area
     w = (np.repeat((bx - ax)[whose], deep) * y - np.repeat((by - ay)[whose] * x, deep)) / area

@@ -57,6 +57,18 @@ def test_what_lies_inside_or_right_under_another_part_carries_nothing() -> None:
     assert found[1].area == pytest.approx(2.0 * 0.6, rel=0.05)
 
 
+def test_a_rim_with_a_hole_is_a_ring_and_what_is_in_the_box_stays_free() -> None:
+    """Concave faces were filled across their holes, and four balls lay on the rim of an open toy box."""
+    rim = 'part("rim", extrude(rectangle(0.8, 0.4), 0.02, holes=[rectangle(0.74, 0.34)], at=(0, 0, 0.38)), material="wood")'
+    inside = block("inside", (0.78, 0.38, 0.02), z=0.1)
+    found = {s.part: s for s in surfaces(f"{rim}, {inside}")}
+    assert found["rim"].area == pytest.approx(0.8 * 0.4 - 0.74 * 0.34, rel=0.25)
+    assert found["inside"].level == pytest.approx(0.12) and found["inside"].area > 0.9 * 0.74 * 0.34
+    corner = 'part("top", extrude([(-1, -0.5), (1, -0.5), (1, 0), (0, 0), (0, 1), (-1, 1)], 0.04), material="wood")'
+    [top] = surfaces(corner)
+    assert top.area == pytest.approx(1.0 + 1.0, rel=0.03)
+
+
 def test_a_slope_and_an_underside_are_no_surfaces() -> None:
     assert surfaces('part("roof", turn(box((1.0, 1.0, 0.02)), 40, axis="x"), material="wood")') == []
     assert surfaces('part("rod", cylinder(0.01, 1.0), material="metal")') == []
