@@ -14,6 +14,7 @@ from ..artifacts.assets import ChosenAssets
 from ..artifacts.layout import Layout, LayoutProgram, LedgerEntry, ProxyLine
 from ..artifacts.objects import Descriptions, Geometry, ObjectProgram, OwnModelling, RoomStyle
 from ..artifacts.surfaces import SmallObjects, SmallPlace
+from ..errors import ProgramError
 from ..layout.auxiliary import order_by_depth
 from ..layout.hand import apply_hand_edits
 from ..layout.initial import proxy_of
@@ -48,7 +49,7 @@ def run(view: View) -> StageRun:
     seating = _Seating(view, layout, shapes_of(text))
     yield Tell("Putting things onto surfaces", 2, 3)
     seating.run()
-    text = relaid(text, seating.layout)
+    text = seating.sound(text, layout)
     geometry = view.need(Geometry)
     if seating.new:
         text, geometry = _modelled(view, seating, text, geometry)
@@ -118,6 +119,28 @@ class _Seating:
                 carriers.add(proxy)
         for item in order_by_depth(sorted(open_ids.values(), key=lambda o: -o.size[0] * o.size[1])):
             self._seat(item, carriers, calibration)
+
+    def sound(self, text: str, before: Layout) -> str:
+        """The room's text with this layout; where a program cannot be made in the size it has now, the thing keeps its former one.
+
+        Args:
+            text: with the layout `before`.
+        """
+        resized = [p for p in before.proxies if (now := self.layout.proxy(p.id)) is not None and now.size != p.size]
+        for former in [None, *resized]:
+            if former is not None:
+                now = self.layout.proxy(former.id) or former
+                centre = (*now.centre[:2], base_of(now) + former.size[2] / 2)
+                self._place(now.model_copy(update={"size": former.size, "centre": centre}))
+                message = "Its program cannot be made in another size, so it stays as large as it was."
+                self.findings.append(Finding(about=former.id, message=message))
+            made = relaid(text, self.layout)
+            try:
+                evaluate(made, FINISHED_ROOM_LIMITS)
+            except ProgramError:
+                continue
+            return made
+        return relaid(text, self.layout)
 
     def open_names(self) -> set[str]:
         """Ids of the small objects that this run places."""

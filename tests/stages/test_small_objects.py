@@ -12,7 +12,7 @@ from code_as_room.pipeline.artifacts.surfaces import SmallObjects
 from code_as_room.pipeline.program.lines import parse_layout
 from code_as_room.pipeline.run import Run
 from code_as_room.pipeline.stages import all_stages
-from code_as_room.pipeline.stages.s07_surfaces import STAGE, shapes_of
+from code_as_room.pipeline.stages.s07_surfaces import STAGE, _Seating, shapes_of
 from code_as_room.pipeline.surfaces.choose import base_of, to_local
 from code_as_room.pipeline.surfaces.rasters import sample
 
@@ -89,3 +89,32 @@ def test_a_small_object_that_was_moved_by_hand_stays_bit_for_bit(run: Run, scene
     scene.edits = [LayoutEdit(op="move", id=item.id, centre=moved, origin="artist")]
     run.run_stage(STAGE)
     assert proxy(run, item.id).centre == moved
+
+
+def test_a_program_that_fails_in_another_size_keeps_its_own_and_the_room_is_built() -> None:
+    """One loft whose heights did not rise any more ended a whole run."""
+    made = (
+        "def vase_1(size):\n    w, d, h = size\n"
+        "    rings = [rectangle(w, d), rectangle(w / 2, d / 2), rectangle(w, d)]\n"
+        "    return [part('body', loft(rings, [0, 0.2, h]), material='ceramic')]\n"
+    )
+    lines = (
+        "room(size=(4, 4, 2.5), floor=[(-2, -2), (2, -2), (2, 2), (-2, 2)])\n"
+        "proxy('table_1', 'table', centre=(0, 0, 0.35), size=(1, 1, 0.7))\n"
+        "proxy('vase_1', 'vase', centre=(0, 0, 0.85), size=(0.2, 0.2, 0.3), placement='surface', parent='table_1')\n"
+    )
+    text = f"{lines}\n{made}\nfurnish('vase_1', vase_1)\nbuild()\n"
+    layout = parse_layout(text)
+    seating = _Seating(None, layout, {})  # type: ignore[arg-type]
+    vase = layout.proxy("vase_1")
+    assert vase is not None
+    smaller = vase.model_copy(update={"size": (0.1, 0.1, 0.15), "centre": (0.2, 0.1, 0.775)})
+    seating._place(smaller)
+    found = parse_layout(seating.sound(text, layout)).proxy("vase_1")
+    assert found is not None and found.size == vase.size and found.centre == (0.2, 0.1, 0.85)
+    assert [f.about for f in seating.findings] == ["vase_1"]
+    # What can be made smaller is.
+    seating = _Seating(None, layout, {})  # type: ignore[arg-type]
+    seating._place(smaller.model_copy(update={"size": (0.1, 0.1, 0.25), "centre": (0.2, 0.1, 0.825)}))
+    found = parse_layout(seating.sound(text, layout)).proxy("vase_1")
+    assert found is not None and found.size == (0.1, 0.1, 0.25) and seating.findings == []
