@@ -28,7 +28,7 @@ from ..program.lines import parse_layout
 from ..program.prelude.proxies import proxy_shapes
 from ..program.prelude.shape import Shape
 from ..surfaces.choose import Carriers, Seated, base_of, carriers_under
-from ..surfaces.hang import reaching_rail
+from ..surfaces.hang import is_hung, under_rail
 from .base import Reads, Stage, View
 from .carrying import carried_on
 from .s07_retrieval import SETTING, retrieve
@@ -117,7 +117,9 @@ class _Seating:
         for proxy in order_by_depth(self.layout.proxies):
             if proxy.id not in open_ids:
                 carriers.add(proxy)
-        for item in order_by_depth(sorted(open_ids.values(), key=lambda o: -o.size[0] * o.size[1])):
+        ordered = order_by_depth(sorted(open_ids.values(), key=lambda o: -o.size[0] * o.size[1]))
+        # Clothes hang over what stands below them.
+        for item in sorted(ordered, key=lambda o: is_hung(f"{o.category} {o.label}")):
             self._seat(item, carriers, calibration)
 
     def sound(self, text: str, before: Layout) -> str:
@@ -165,6 +167,8 @@ class _Seating:
             self._place(lying)
             self.places.append(SmallPlace(id=item.id, on=parent, height=base_of(lying)))
             return
+        if self._hang(item, standing, parent, carriers, calibration):
+            return
         seated = carriers.seat(item, calibration, parent)
         if seated is None:
             lifted = standing or proxy_of(item, calibration)[0]
@@ -176,11 +180,28 @@ class _Seating:
             self._left(item, standing, carriers)
             return
         proxy = self._line(seated.proxy, standing)
-        carrier = carriers.proxies[proxy.parent or ""]
-        proxy = reaching_rail(proxy, carrier, self.shapes.get(carrier.id, ()))
         carriers.add(proxy)
         self._place(proxy)
         self._note(item, seated, proxy)
+
+    def _hang(
+        self,
+        item: DetectedObject,
+        standing: ProxyLine | None,
+        parent: str,
+        carriers: Carriers,
+        calibration: Calibration,
+    ) -> bool:
+        """Hang clothes from the rail of what they are in; False for all else, and where there is none."""
+        carrier = carriers.proxies.get(parent)
+        if carrier is None:
+            return False
+        hung = under_rail(self._line(standing or proxy_of(item, calibration)[0], standing), carrier, carriers)
+        if hung is not None:
+            carriers.proxies[hung.id] = hung
+            self._place(hung)
+            self.places.append(SmallPlace(id=item.id, on=parent, part="rail", height=base_of(hung)))
+        return hung is not None
 
     def _line(self, proxy: ProxyLine, standing: ProxyLine | None) -> ProxyLine:
         """The seated proxy under the words that the room's program has for it."""

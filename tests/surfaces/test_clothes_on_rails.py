@@ -7,12 +7,16 @@ from dataclasses import replace
 
 import pytest
 from code_as_room.pipeline.artifacts.layout import ProxyLine
+from code_as_room.pipeline.program.prelude.shape import Shape
 from code_as_room.pipeline.program.prelude.solids import box, cylinder
-from code_as_room.pipeline.surfaces.hang import reaching_rail
+from code_as_room.pipeline.surfaces.choose import Carriers
+from code_as_room.pipeline.surfaces.hang import under_rail
 
 WARDROBE = ProxyLine(id="wardrobe_1", category="wardrobe", centre=(1.0, 2.0, 1.1), size=(1.6, 0.6, 2.2), yaw=90.0)
+TOP = replace(box((1.6, 0.6, 0.02), at=(0, 0, 2.19)), part="top")
 BOARD = replace(box((1.6, 0.6, 0.02), at=(0, 0, 0.49)), part="shelf")
 RAIL = replace(cylinder(0.012, 1.5, at=(0, 0, 1.9), axis="x"), part="hanging rail")
+HOOK = 1.9 + 0.012 + 0.015
 
 
 def row(category: str = "row of shirts", height: float = 0.9, at: tuple[float, float] = (1.0, 2.3)) -> ProxyLine:
@@ -22,24 +26,43 @@ def row(category: str = "row of shirts", height: float = 0.9, at: tuple[float, f
     )
 
 
-def test_a_row_of_clothes_reaches_its_rail_and_stays_where_it_is() -> None:
-    found = reaching_rail(row(), WARDROBE, [BOARD, RAIL])
-    assert found.centre[2] - found.size[2] / 2 == pytest.approx(0.5)
-    assert found.centre[2] + found.size[2] / 2 == pytest.approx(1.9 + 0.012 + 0.015, abs=1e-6)
-    assert found.centre[:2] == row().centre[:2] and found.size[:2] == row().size[:2]
+def hung(thing: ProxyLine, shapes: list[Shape], *others: ProxyLine) -> ProxyLine | None:
+    carriers = Carriers({"wardrobe_1": shapes})
+    for proxy in (WARDROBE, *others):
+        carriers.proxies[proxy.id] = proxy
+    return under_rail(thing, WARDROBE, carriers)
+
+
+def ends(thing: ProxyLine | None) -> tuple[float, float]:
+    assert thing is not None
+    return thing.centre[2] - thing.size[2] / 2, thing.centre[2] + thing.size[2] / 2
+
+
+@pytest.mark.parametrize("height", [0.5, 0.9, 1.4, 1.6])
+def test_a_row_of_clothes_hangs_from_its_rail_down_to_the_board_and_never_lies_on_top(height: float) -> None:
+    found = hung(row(height=height), [TOP, BOARD, RAIL])
+    assert ends(found) == pytest.approx((0.5, HOOK), abs=1e-6)
+    assert found is not None and found.centre[:2] == row().centre[:2] and found.size[:2] == row().size[:2]
+
+
+def test_clothes_hang_over_the_shoes_below_them() -> None:
+    shoes = ProxyLine(id="shoes_1", category="pair of shoes", centre=(1.0, 2.3, 0.56), size=(0.3, 0.25, 0.12),
+                      placement="surface", parent="wardrobe_1")  # fmt: skip
+    assert ends(hung(row(), [TOP, BOARD, RAIL], shoes)) == pytest.approx((0.62, HOOK), abs=1e-6)
+    aside = shoes.model_copy(update={"centre": (1.0, 1.4, 0.56)})
+    assert ends(hung(row(), [TOP, BOARD, RAIL], aside)) == pytest.approx((0.5, HOOK), abs=1e-6)
 
 
 @pytest.mark.parametrize(
     ("thing", "shapes"),
     [
-        (row("stack of folded shirts"), [BOARD, RAIL]),
-        (row("storage box"), [BOARD, RAIL]),
-        (row(), [BOARD]),
-        (row(height=0.4), [BOARD, RAIL]),  # nobody wears that
-        (row(height=1.6), [BOARD, RAIL]),  # it is longer than there is room for: nothing here mends that
-        (row(at=(1.0, 3.4)), [BOARD, RAIL]),
+        (row("stack of folded shirts"), [TOP, BOARD, RAIL]),
+        (row("storage box"), [TOP, BOARD, RAIL]),
+        (row(), [TOP, BOARD]),
+        (row(), [RAIL]),
+        (row(at=(1.0, 3.4)), [TOP, BOARD, RAIL]),
     ],
-    ids=["folded", "no clothes", "no rail", "far too short", "too long", "beside the rail"],
+    ids=["folded", "no clothes", "no rail", "nothing below", "beside the rail"],
 )
-def test_all_else_stays_as_it_is(thing: ProxyLine, shapes: list[object]) -> None:
-    assert reaching_rail(thing, WARDROBE, shapes) == thing  # type: ignore[arg-type]
+def test_all_else_is_placed_as_anything_is(thing: ProxyLine, shapes: list[Shape]) -> None:
+    assert hung(thing, shapes) is None
