@@ -13,7 +13,7 @@ DEEP = 0.01
 """Metres that outlines and heights may run into each other."""
 SHARED = 0.02
 SHARED_SMALL = 0.1
-SHARED_SOFT = 0.35
+SHARED_SOFT = 0.75
 """Part of the smaller one's solid that two things may share: books lean into each other, cushions are pressed together."""
 IN_THE_WAY = 0.06
 """Metres that a thing may reach into where a door opens."""

@@ -8,6 +8,7 @@ metres with the least moving wins. Frame of the room: metres, z up; yaw in degre
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -40,6 +41,9 @@ LYING = 0.02
 """A thing stands on another when its base is within this many metres of the other's surface."""
 
 
+_SOFT = re.compile(r"\b(pillows?|cushions?|bolsters?)\b", re.IGNORECASE)
+
+
 @dataclass(frozen=True)
 class Seated:
     """Where an object stands: its proxy line, and how it came there.
@@ -65,13 +69,20 @@ class Carriers:
     shapes: Mapping[str, Sequence[Shape]]
     proxies: dict[str, ProxyLine] = field(default_factory=dict)
     _surfaces: dict[str, list[Surface]] = field(default_factory=dict)
+    _bare: dict[str, list[Surface]] = field(default_factory=dict)
     _fine: dict[str, Samples | None] = field(default_factory=dict)
 
     def surfaces(self, name: str) -> list[Surface]:
         """The surfaces of one thing, highest first."""
         if name not in self._surfaces:
             self._surfaces[name] = support_surfaces(self.shapes.get(name, ()))
+            self._bare[name] = list(self._surfaces[name])
         return self._surfaces[name]
+
+    def _open_to(self, category: str, name: str) -> list[Surface]:
+        """The surfaces of one thing as they are free for a thing: pillows lie on and lean against pillows."""
+        surfaces = self.surfaces(name)
+        return self._bare[name] if _is_soft(category) else surfaces
 
     def add(self, proxy: ProxyLine) -> None:
         """A thing that stands where it stands; what it stands on is occupied there."""
@@ -92,6 +103,8 @@ class Carriers:
             if abs(surface.level - base) <= max(LYING, 0.05):
                 cells = occupied(surface.grid, x, y, proxy.size[0], proxy.size[1], proxy.yaw - parent.yaw)
                 self._surfaces[parent.id][number] = surface.taken(cells)
+                if not _is_soft(proxy.category):
+                    self._bare[parent.id][number] = self._bare[parent.id][number].taken(cells)
 
     def lain(self, proxy: ProxyLine) -> ProxyLine:
         """A cloth at the height at which it lies on what carries it."""
@@ -104,6 +117,7 @@ class Carriers:
         self.shapes = {**self.shapes, proxy.id: found, parent.id: covered}
         for name in (proxy.id, parent.id):
             self._surfaces.pop(name, None)
+            self._bare.pop(name, None)
             self._fine.pop(name, None)
         for other in self.proxies.values():
             if other.parent == parent.id and other.placement == "surface" and not is_lying_cloth(other):
@@ -138,7 +152,7 @@ class Carriers:
             return None
         offers = [
             offer
-            for surface in self.surfaces(parent)
+            for surface in self._open_to(item.category, parent)
             if surface.area >= 0.3 * item.size[0] * item.size[1]
             for offer in self._offers(item, calibration, carrier, surface)
         ]
@@ -191,6 +205,11 @@ def _hangs_over(proxy: ProxyLine, surface: Surface, turn: float) -> bool:
     cos, sin = abs(math.cos(math.radians(turn))), abs(math.sin(math.radians(turn)))
     reach = (proxy.size[0] * cos + proxy.size[1] * sin, proxy.size[0] * sin + proxy.size[1] * cos)
     return reach[0] > extent[0] + LYING or reach[1] > extent[1] + LYING
+
+
+def _is_soft(category: str) -> bool:
+    """Whether a thing gives way to others of its kind: cushions and pillows are piled where they are wanted."""
+    return bool(_SOFT.search(category.replace("_", " ")))
 
 
 def base_of(proxy: ProxyLine) -> float:

@@ -107,7 +107,7 @@ def test_cushions_pressed_together_stay_as_they_were_laid_and_one_within_another
         return room(TABLE, line.format("a", 1.0, 0, on, 0.78, 0.16), line.format("b", 1.0 + apart, 8, on, 0.77, 0.14))
 
     assert not find_faults(cushions(0.3), Options())
-    assert [fault.kind for fault in find_faults(cushions(0.1), Options())] == ["overlap"]
+    assert [fault.kind for fault in find_faults(cushions(0.02), Options())] == ["overlap"]
 
 
 def test_a_chair_under_a_table_does_not_run_through_it_though_their_boxes_do() -> None:

@@ -6,7 +6,11 @@ import math
 
 import numpy as np
 import pytest
+from code_as_room.pipeline.artifacts.analysis import Calibration, DetectedObject
+from code_as_room.pipeline.artifacts.layout import ProxyLine
+from code_as_room.pipeline.geometry.camera import camera_looking_at
 from code_as_room.pipeline.program.evaluate import evaluate_object
+from code_as_room.pipeline.surfaces.choose import Carriers
 from code_as_room.pipeline.surfaces.find import Surface, support_surfaces
 from code_as_room.pipeline.surfaces.rasters import sample
 from code_as_room.pipeline.surfaces.seat import Seat, find_seat, occupied
@@ -162,3 +166,27 @@ def test_a_round_thing_is_let_down_until_the_two_meshes_touch() -> None:
     assert 0.005 < down < 0.02
     assert drop(ball, 1.0, carrier, (0.0, -0.3, 0.1), 0.0) == pytest.approx(0.0, abs=2e-3)
     assert drop(ball, 1.0, carrier, (0.0, -0.3, 0.09), 0.0) == pytest.approx(-0.01, abs=2e-3), "lifted out"
+
+
+def test_a_pillow_leans_against_a_pillow_and_a_book_does_not_lie_in_one() -> None:
+    """Pillows piled at a headboard were laid out side by side, the white ones before the brown ones."""
+
+    def thing(name: str, category: str) -> DetectedObject:
+        return DetectedObject(id=name, category=category, placement="surface", parent="bed", size=(0.5, 0.3, 0.2),
+                              centre=(0.0, 0.3, 0.6), box=None)  # fmt: skip
+
+    bed = ProxyLine(id="bed", category="bed", centre=(0, 0, 0.25), size=(1.6, 2.0, 0.5))
+    carriers = Carriers(
+        {"bed": evaluate_object(f"def thing():\n    return [{block('top', (1.6, 2.0, 0.5))}]\n", "thing")}
+    )
+    carriers.add(bed)
+    carriers.add(
+        ProxyLine(id="pillow_1", category="pillow", centre=(0, 0.3, 0.6), size=(0.5, 0.3, 0.2), placement="surface",
+                  parent="bed")
+    )  # fmt: skip
+    over = camera_looking_at("perspective", (0, 0, 6), (0, 0, 0), 45.0, (800, 800))
+    calibration = Calibration(camera=over, floor=[(-2, -2), (2, -2), (2, 2), (-2, 2)], height=2.5, error_px=0.0,
+                              scale_source="truth")  # fmt: skip
+    pillow, book = (carriers.seat(thing(c, c), calibration, "bed") for c in ("white pillow", "book"))
+    assert pillow is not None and pillow.moved < 0.03
+    assert book is not None and book.moved > 0.2
