@@ -3,8 +3,8 @@
 
 Renders are mostly shown through a transform that keeps bright light from burning out (AgX, Filmic): blacks become grey, and
 whatever is bright loses most of its colour. An eye takes that for the picture's manner and sees strong colours all the same.
-Taken as base colours they would be too pale in any light. So where a picture's range
-is narrow as only such a transform leaves it, its colours are led back through AgX; bright greys stay as bright as they are.
+Taken as base colours they would be too pale in any light. So where a picture's range is narrow as only such a transform leaves it,
+its colours are led back through AgX; bright greys stay as bright as they are.
 
 A room made from such a picture is shown through the same transform (`tone_of`), and so looks like the picture again.
 """

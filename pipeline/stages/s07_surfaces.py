@@ -129,6 +129,8 @@ class _Seating:
             text: with the layout `before`.
         """
         resized = [p for p in before.proxies if (now := self.layout.proxy(p.id)) is not None and now.size != p.size]
+        if not resized:  # the build will evaluate it, and nothing here can have broken it
+            return relaid(text, self.layout)
         for former in [None, *resized]:
             if former is not None:
                 now = self.layout.proxy(former.id) or former
