@@ -18,10 +18,11 @@ from ..artifacts.layout import LightLine, WorldLine
 from ..geometry.polygon import Floats
 from ..program.prelude.kelvin import light_colour
 from .albedo import LUMINANCE
+from .bulk import Bools
 from .estimate import irradiance
 from .exposure import GLOSS
 from .measure import LEAST_PLACES, Places
-from .space import FLOOR, Bools, Space
+from .space import FLOOR, Space
 from .tone import TRANSFORM, coloured_light
 
 MOST = 0.3

@@ -20,9 +20,11 @@ from .space import SKY, Space
 
 RAYS = 24
 """Directions that are followed from each place; few, since hundreds of places are averaged."""
-_ON_LIGHT = 4  # places on each light that are looked at from a place
+_ON_LIGHT = (4, 3)  # places along and across each light that are looked at from a place
 _OFF = 2e-3  # metres above a surface
 _MOST_GIVEN_BACK = 0.85
+_SPREAD = 1.6
+"""Metres round a place from which the light that bounces on there comes."""
 _BOUNCES = 4
 """From one surface to another, that renders follow (`scene/shoot.py`): in a white room more would add half as much again."""
 
@@ -44,7 +46,7 @@ def irradiance(space: Space, lights: Sequence[LightLine], sky: float, places: Fl
     """
     chance = np.random.default_rng(7)
     origins = places + _OFF * normals
-    direct = np.stack([_direct(space, light, origins, normals, _ON_LIGHT, chance) for light in lights]) if lights else (
+    direct = np.stack([_direct(space, light, origins, normals, chance, *_ON_LIGHT) for light in lights]) if lights else (
         np.zeros((0, len(places)))
     )  # fmt: skip
     count = len(places)
@@ -56,19 +58,29 @@ def irradiance(space: Space, lights: Sequence[LightLine], sky: float, places: Fl
     spots = starts[met] + ways[met] * distance[met, None] + _OFF * facing[met]
     bounced = np.zeros((len(lights), count * RAYS))
     for index, light in enumerate(lights):
-        bounced[index, met] = albedo[met] * _direct(space, light, spots, facing[met], 1, chance)
+        bounced[index, met] = albedo[met] * _direct(space, light, spots, facing[met], chance)
     once = bounced.reshape(len(lights), count, RAYS).mean(axis=2)
-    seen = (~met).reshape(count, RAYS).mean(axis=1)
+    passed = np.where(met, 0.0, space.let_through(starts, ways, np.full(len(ways), 1e6)))
+    seen = passed.reshape(count, RAYS).mean(axis=1)
     from_sky = math.pi * sky * seen
     further, spread = np.zeros_like(once), np.zeros(count)
-    # What bounces on is spread over a part of the room evenly enough to be a mean.
+    # What bounces on keeps to a part of the room, and to where it is.
     parts = part_of(space, places)
     for part in np.unique(parts):
         here = parts == part
         given_back = min(_MOST_GIVEN_BACK, float(albedo.reshape(count, RAYS)[here].mean()))
-        further[:, here] = once[:, here].mean(axis=1, keepdims=True) * _series(given_back, _BOUNCES - 1)
-        spread[here] = float(from_sky[here].mean()) * _series(given_back, _BOUNCES)
+        near = _nearness(places[here])
+        further[:, here] = once[:, here] @ near * _series(given_back, _BOUNCES - 1)
+        spread[here] = from_sky[here] @ near * _series(given_back, _BOUNCES)
     return Arriving(direct + once + further, from_sky + spread, direct)
+
+
+def _nearness(places: Floats) -> Floats:
+    """How much each place (N, 3) has of what bounces at the others, (N, N): columns add up to 1."""
+    apart = ((places[:, None] - places[None]) ** 2).sum(axis=2)
+    weights = np.exp(-apart / (2 * _SPREAD**2))
+    result: Floats = weights / weights.sum(axis=0)
+    return result
 
 
 def _series(given_back: float, bounces: int) -> float:
@@ -77,9 +89,10 @@ def _series(given_back: float, bounces: int) -> float:
 
 
 def _direct(
-    space: Space, light: LightLine, origins: Floats, normals: Floats, samples: int, chance: np.random.Generator
-) -> Floats:
-    """What arrives straight from a light, (N,)."""
+    space: Space, light: LightLine, origins: Floats, normals: Floats, chance: np.random.Generator, columns: int = 1,
+    rows: int = 1,
+) -> Floats:  # fmt: skip
+    """What arrives straight from a light, (N,), by a place in each cell of it."""
     total = np.zeros(len(origins))
     if not len(origins):
         return total
@@ -88,11 +101,14 @@ def _direct(
         facing = normals @ way
         lit = facing > 0
         ways = np.broadcast_to(way, (int(lit.sum()), 3))
-        free = ~space.blocked(origins[lit], ways, np.full(len(ways), 1e6))
+        far = np.full(len(ways), 1e6)
+        free = ~space.blocked(origins[lit], ways, far) * space.let_through(origins[lit], ways, far)
         total[lit] = light.energy * facing[lit] * free
         return total
-    for _ in range(samples):
-        spots, spread = _on_light(light, len(origins), chance)
+    for cell in np.ndindex(columns, rows):
+        spots, spread = _on_light(
+            light, (np.array(cell)[:, None] + chance.random((2, len(origins)))) / [[columns], [rows]]
+        )
         towards = spots - origins
         length = np.maximum(np.linalg.norm(towards, axis=1), 1e-3)
         ways = towards / length[:, None]
@@ -106,21 +122,22 @@ def _direct(
             value = light.energy / (4 * math.pi) * facing / np.maximum(length, 0.05) ** 2
         lit = value > 0
         value[lit] *= ~space.blocked(origins[lit], ways[lit], length[lit] - 0.01, boxes=light.kind != "point")
-        total += value / samples
+        value[lit] *= space.let_through(origins[lit], ways[lit], length[lit])
+        total += value / (columns * rows)
     return total
 
 
-def _on_light(light: LightLine, count: int, chance: np.random.Generator) -> tuple[Floats, float]:
-    """Places on a light (count, 3), and its area."""
+def _on_light(light: LightLine, where: Floats) -> tuple[Floats, float]:
+    """Places on a light (N, 3), given along and across it (2, N), 0..1, and its area."""
     at = np.array(light.at, dtype=float)
     if light.kind != "area":
-        return np.broadcast_to(at, (count, 3)), 1.0
+        return np.broadcast_to(at, (where.shape[1], 3)), 1.0
     forward = aim(light)
     side = np.cross((0.0, 1.0, 0.0) if abs(forward[2]) > 0.999 else (0.0, 0.0, 1.0), -forward)
     side /= np.linalg.norm(side)
     up = np.cross(-forward, side)
     width, height = max(light.size, 1e-3), max(light.size_y or light.size, 1e-3)
-    a, b = chance.random((2, count)) - 0.5
+    a, b = where - 0.5
     return at + a[:, None] * width * side + b[:, None] * height * up, width * height
 
 

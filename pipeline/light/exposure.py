@@ -15,14 +15,15 @@ import numpy as np
 from ..artifacts.layout import LightLine
 from ..artifacts.light import Brightness
 from ..geometry.polygon import Floats
+from .bulk import Bools, Ints
 from .estimate import irradiance
 from .measure import LEAST_PLACES, Places, floor_and_walls
-from .space import FLOOR, Bools, Ints, Space
+from .space import FLOOR, Space
 from .tone import scene_light, shown
 
 LEAST, MOST = -4.0, 4.0
 """Stops; lights that need more are wrong themselves."""
-_FLOOR_WEIGHT = 0.6
+_FLOOR_WEIGHT = 0.75
 GLOSS = 0.03
 """What surfaces give back beside their colour: the gloss that everything has."""
 _GREY = 0.36

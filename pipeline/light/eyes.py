@@ -15,8 +15,9 @@ import numpy as np
 
 from ..artifacts.layout import CameraLine
 from ..geometry.polygon import Floats
+from .bulk import Bools
 from .panorama import Panorama, open_leaves, panoramas, viewing_space
-from .space import Bools, Space, from_walls, inside
+from .space import Space, from_walls, inside
 
 EYES = ("eye_1", "eye_2")
 EYE_HEIGHT = 1.5
@@ -150,7 +151,7 @@ def _free(space: Space, places: Floats, height: float, ease: float) -> Bools:
             continue
         x, y = _turned(places - np.array(p.centre[:2]), p.yaw)
         free &= (np.abs(x) > p.size[0] / 2 + m) | (np.abs(y) > p.size[1] / 2 + m)
-    for _, centre, half, yaw in open_leaves(space.layout):
+    for _, centre, half, yaw, _ in open_leaves(space.layout):
         x, y = _turned(places - np.array(centre[:2]), yaw)
         free &= (np.abs(x) > half[0] + m) | (np.abs(y) > half[1] + m)
     for wall in space.walls:

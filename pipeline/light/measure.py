@@ -14,8 +14,9 @@ from ..artifacts.common import ImageBox
 from ..geometry.camera import Projector
 from ..geometry.polygon import Floats
 from ..picture import ReferencePicture
+from .bulk import Bools
 from .developed import developed
-from .space import FLOOR, WALLS, Bools, Space, from_walls, inside
+from .space import FLOOR, WALLS, Space, from_walls, inside
 from .tone import linear, luminance
 
 LONG_SIDE = 512

@@ -5,13 +5,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
 from ..artifacts.layout import DoorLine, Layout, ProxyLine, WallLine
 from ..geometry.polygon import Floats
-from .space import FLAT, FLOOR, SKY, WALLS, Bools, Boxes, Ints, Space
+from .bulk import FLAT, Bools, Boxes, Ints, Row, boxes_of
+from .space import FLOOR, SKY, WALLS, Space
 
 _TURNS, _RISES = 90, 12
 _SLOPES = (-0.75, 0.39)
@@ -21,6 +22,7 @@ _MOST = 24  # larger objects that are looked at
 _WIDE = 0.3  # metres: smaller things hide nothing
 _LEAF = 0.04  # metres: thickness of a door's leaf
 _TALL = 1.2  # metres
+_GREY = 0.5  # what is given back by what is only looked at
 _CLOSE = 0.04  # metres by which a point of an object may lie behind what a ray meets
 
 
@@ -64,33 +66,22 @@ def viewing_space(space: Space) -> Space:
     more += [end for w in space.layout.walls if w.partition for end in _ends(w)]
     if not more:
         return space
-    b = space.boxes
-    yaws = np.radians([r[3] for r in more])
-    boxes = Boxes(
-        centres=np.concatenate([b.centres, [r[1] for r in more]]),
-        halves=np.concatenate([b.halves, [r[2] for r in more]]),
-        cosines=np.concatenate([b.cosines, np.cos(yaws)]),
-        sines=np.concatenate([b.sines, np.sin(yaws)]),
-        albedo=np.concatenate([b.albedo, np.full(len(more), 0.5)]),
-        owners=(*b.owners, *(r[0] for r in more)),
-    )
-    return replace(space, boxes=boxes)
+    b, added = space.boxes, boxes_of(more)
+    joined = {f.name: np.concatenate([getattr(b, f.name), getattr(added, f.name)]) for f in fields(Boxes)[:-1]}
+    return replace(space, boxes=Boxes(**joined, owners=(*b.owners, *added.owners)))
 
 
-_Row = tuple[str, tuple[float, float, float], tuple[float, float, float], float]
+def _row(p: ProxyLine) -> Row:
+    return (p.id, p.centre, (p.size[0] / 2, p.size[1] / 2, p.size[2] / 2), p.yaw, _GREY)
 
 
-def _row(p: ProxyLine) -> _Row:
-    return (p.id, p.centre, (p.size[0] / 2, p.size[1] / 2, p.size[2] / 2), p.yaw)
-
-
-def open_leaves(layout: Layout) -> list[_Row]:
+def open_leaves(layout: Layout) -> list[Row]:
     """The leaves of doors that stand open: id, centre, half sizes in metres, yaw in degrees."""
     walls = {w.id: w for w in layout.walls}
     return [_leaf(d, walls[d.wall]) for d in layout.doors if d.open and d.wall in walls]
 
 
-def _leaf(door: DoorLine, wall: WallLine) -> _Row:
+def _leaf(door: DoorLine, wall: WallLine) -> Row:
     """The leaf of a door that stands open."""
     way = (door.end[0] - door.start[0], door.end[1] - door.start[1])
     runs = way[0] * (wall.end[0] - wall.start[0]) + way[1] * (wall.end[1] - wall.start[1])
@@ -98,14 +89,14 @@ def _leaf(door: DoorLine, wall: WallLine) -> _Row:
     half = math.hypot(*way) / 2
     x, y = half * math.cos(math.radians(yaw)), half * math.sin(math.radians(yaw))
     centre = (door.start[0] + x, door.start[1] + y, door.height / 2)
-    return (door.id, centre, (half, _LEAF / 2, door.height / 2), yaw)
+    return (door.id, centre, (half, _LEAF / 2, door.height / 2), yaw, _GREY)
 
 
-def _ends(wall: WallLine) -> list[_Row]:
+def _ends(wall: WallLine) -> list[Row]:
     """Thin boxes that close the ends of a partition, which for rays is two faces only."""
     yaw = math.degrees(math.atan2(wall.end[1] - wall.start[1], wall.end[0] - wall.start[0]))
     half = (0.01, wall.thickness / 2, wall.height / 2)
-    return [(wall.id, (*end, wall.height / 2), half, yaw) for end in (wall.start, wall.end)]
+    return [(wall.id, (*end, wall.height / 2), half, yaw, _GREY) for end in (wall.start, wall.end)]
 
 
 def panoramas(view: Space, places: Sequence[tuple[float, float, float]]) -> Iterator[Panorama]:
@@ -204,6 +195,6 @@ def _roots(view: Space) -> Ints:
 
 
 def _importance(p: ProxyLine) -> float:
-    """Larger things count more, but not as much as they are larger."""
+    """Larger things count more, but not as much as they are larger; a curtain less than a bed that is as high as it is long."""
     w, d, h = p.size
-    return math.sqrt(max(w * d, w * h, d * h))
+    return math.cbrt(w * d * h)

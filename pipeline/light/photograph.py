@@ -22,10 +22,10 @@ from .tone import scene_light
 _ACROSS, _DOWN = 16, 10
 _BRIGHT = 80.0
 """Per cent of a view that are darker than what is exposed for: a wall, a bed, a worktop in the light."""
-_AS = 0.78
+_AS = 0.8
 """How bright that is on the screen."""
 _BRIGHTEST, _NOT_BURNT = 95.0, 0.93
-"""The same of what is brightest in it: in a dark alcove a white wall at its side is not to burn out."""
+"""The same of what is brightest in it: in a dark alcove a white wall at its side is not to burn out. Where the sun falls may."""
 _LEAST, _MOST = -0.5, 1.0
 _ABOVE = 2e-3  # metres
 
@@ -39,7 +39,9 @@ def stops_for(space: Space, lights: Sequence[LightLine], sky: float, camera: Cam
         return 0.0
     points = at + ways[met] * distance[met, None] + _ABOVE * normals[met]
     arriving = irradiance(space, lights, sky, points, normals[met])
-    gives = (arriving.lights.sum(axis=0) + arriving.sky) * (space.albedo_of(surface[met]) + GLOSS) / math.pi
+    suns = [n for n, light in enumerate(lights) if light.kind == "sun"]
+    even = arriving.lights.sum(axis=0) - arriving.direct[suns].sum(axis=0) + arriving.sky
+    gives = even * (space.albedo_of(surface[met]) + GLOSS) / math.pi
     stops = []
     for share, shown in ((_BRIGHT, _AS), (_BRIGHTEST, _NOT_BURNT)):
         now = float(np.percentile(gives, share)) * 2.0**view.exposure

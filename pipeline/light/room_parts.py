@@ -6,7 +6,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..geometry.polygon import Floats
-from .space import Bools, Ints, Space, Wall, inside
+from .bulk import Bools, Ints
+from .space import Space, Wall, inside
 
 
 def part_of(space: Space, points: Floats) -> Ints:

@@ -6,31 +6,21 @@ Coarse on purpose: it answers in a fraction of a second what a render would tell
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..artifacts.layout import Layout, ProxyLine
+from ..artifacts.layout import Layout
 from ..geometry.polygon import Floats
 from ..program.prelude.holes import wall_holes
-from ..program.prelude.palette import category_family, role_colour
+from ..program.prelude.palette import role_colour
 from ..program.prelude.pieces import Hole, WallRun
 from ..program.prelude.record import Record
 from ..program.prelude.walls import wall_runs
+from .bulk import FAR, SKIN, Bools, Boxes, Ints, entered, furniture_boxes, near, veils_of
+from .tone import luminance
 
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
-FLAT = 0.05
-"""Metres; what is lower lies on the floor and hides nothing."""
-_FAR = 1e9
-_SLAB = 0.06  # metres: what a table's top is high
-_SKIN = 1e-4  # metres
-_SMALL = 0.02  # cubic metres
 _AT_ONCE = 2048  # rays
-_THIN = ("curtain", "drape", "sheer", "blind", "lamp", "light", "chandelier", "pendant", "sconce", "plant", "rug",
-         "carpet", "mat")  # fmt: skip
 SKY, FLOOR, CEILING, WALLS = -1, 0, 1, 2
 """What a ray meets: the outside, the floor, the ceiling, walls from `WALLS` on, then boxes."""
 
@@ -55,30 +45,20 @@ class Wall:
 
 
 @dataclass(frozen=True)
-class Boxes:
-    """Oriented boxes: centres (N, 3), half sizes (N, 3), cosine and sine of their yaw, reflectance (N,), owners."""
-
-    centres: Floats
-    halves: Floats
-    cosines: Floats
-    sines: Floats
-    albedo: Floats
-    owners: tuple[str, ...]
-
-
-@dataclass(frozen=True)
 class Space:
     """A room for rays.
 
     Attributes:
         floor: outline, counter-clockwise; height: of the ceiling.
         albedo: luminance that floor, ceiling and each wall give back, by surface number.
+        veils: what light goes through in part.
     """
 
     floor: Floats
     height: float
     walls: tuple[Wall, ...]
     boxes: Boxes
+    veils: Boxes
     albedo: Floats
     layout: Layout = field(repr=False)
 
@@ -87,7 +67,7 @@ class Space:
     ) -> tuple[Floats, Ints, Floats]:
         """What rays (N, 3) meet first: distance (1e9 for the sky), surface number, and its normal (N, 3)."""
         count = len(origins)
-        distance = np.full(count, _FAR)
+        distance = np.full(count, FAR)
         surface = np.full(count, SKY, dtype=np.int64)
         normal = np.zeros((count, 3))
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -111,6 +91,16 @@ class Space:
         result: Bools = (surface != SKY) & (distance < lengths - 1e-3)
         return result
 
+    def let_through(self, origins: Floats, ways: Floats, lengths: Floats) -> Floats:
+        """How much of the light on rays (N, 3) of these lengths goes through the curtains before them, (N,)."""
+        passed = np.ones(len(origins))
+        if len(self.veils.centres) and len(origins):
+            ray, box = np.nonzero(near(self.veils, origins, ways))
+            enter, _, _ = entered(self.veils, box, origins[ray], ways[ray], lengths[ray])
+            met = enter < FAR
+            np.multiply.at(passed, ray[met], self.veils.albedo[box[met]])
+        return passed
+
     def albedo_of(self, surface: Ints) -> Floats:
         """Luminance that surfaces give back; 0 for the sky."""
         table = np.concatenate([self.albedo, self.boxes.albedo, [0.0]])
@@ -132,7 +122,7 @@ class Space:
         number: int,
         facing: tuple[float, ...],
     ) -> None:
-        nearer = meets & (t > _SKIN) & (t < distance)
+        nearer = meets & (t > SKIN) & (t < distance)
         distance[nearer] = t[nearer]
         surface[nearer] = number
         normal[nearer] = facing
@@ -141,11 +131,11 @@ class Space:
         b = self.boxes
         for start in range(0, len(origins), _AT_ONCE):
             part = slice(start, start + _AT_ONCE)
-            ray, box = np.nonzero(_near(b, origins[part], ways[part]))
+            ray, box = np.nonzero(near(b, origins[part], ways[part]))
             ray += start
-            enter, axis, sign = _entered(b, box, origins[ray], ways[ray], distance[ray])
+            enter, axis, sign = entered(b, box, origins[ray], ways[ray], distance[ray])
             # Of the boxes that a ray meets the nearest, and of equally near ones the first.
-            met = np.flatnonzero(enter < _FAR)
+            met = np.flatnonzero(enter < FAR)
             met = met[np.lexsort((box[met], enter[met], ray[met]))]
             met = met[np.diff(ray[met], prepend=-1) > 0]
             index, box, axis, sign = ray[met], box[met], axis[met], sign[met]
@@ -154,40 +144,6 @@ class Space:
             c, s = b.cosines[box], b.sines[box]
             along = [np.where(axis == k, sign, 0.0) for k in range(3)]
             normal[index] = np.stack([c * along[0] - s * along[1], s * along[0] + c * along[1], along[2]], axis=1)
-
-
-def _entered(
-    boxes: Boxes, box: Ints, origins: Floats, ways: Floats, within: Floats
-) -> tuple[Floats, Ints, Floats]:  # fmt: skip
-    """Where rays, each given with one box, enter that box: distance (`_FAR` for none), across which axis, from which side."""
-    x, y, z = (origins - boxes.centres[box]).T
-    c, s = boxes.cosines[box], boxes.sines[box]
-    local = (c * x + s * y, c * y - s * x, z)
-    way = (c * ways[:, 0] + s * ways[:, 1], c * ways[:, 1] - s * ways[:, 0], ways[:, 2])
-    nears, sides, leave = [], [], np.full(len(box), np.inf)
-    for at, toward, half in zip(local, way, boxes.halves[box].T, strict=True):
-        toward = np.where(np.abs(toward) < 1e-12, 1e-12, toward)
-        one, other = (-half - at) / toward, (half - at) / toward
-        nears.append(np.minimum(one, other))
-        np.minimum(leave, np.maximum(one, other), out=leave)
-        sides.append(-np.sign(toward))
-    near = np.stack(nears)
-    axis = near.argmax(axis=0)
-    enter = np.maximum(np.maximum(near[0], near[1]), near[2])
-    met = (enter < leave) & (enter > _SKIN) & (enter < within)
-    return np.where(met, enter, _FAR), axis, np.choose(axis, sides)
-
-
-def _near(boxes: Boxes, origins: Floats, ways: Floats) -> Bools:
-    """Which rays pass the ball round each box, (rays, boxes)."""
-    reach = np.einsum("ij,ij->i", boxes.halves, boxes.halves)
-    across = np.einsum("ij,ij->i", origins, origins)[:, None] + (boxes.centres**2).sum(axis=1)
-    across -= 2 * origins @ boxes.centres.T
-    along = np.einsum("ij,ij->i", origins, ways)[:, None] - ways @ boxes.centres.T
-    along *= along
-    along /= np.maximum(np.einsum("ij,ij->i", ways, ways), 1e-30)[:, None]
-    found: Bools = across - along <= 1.0001 * reach + 1e-6
-    return found
 
 
 def _wall_hit(wall: Wall, origins: Floats, ways: Floats) -> tuple[Floats, Bools]:
@@ -220,17 +176,22 @@ def space_of(layout: Layout, albedo: dict[str, float] | None = None) -> Space:
     holes = wall_holes(record, runs, [])
     walls = tuple(face for run in runs for face in _faces(run, holes[run.id]))
     height = max([run.height for run in runs if not run.partition] or [layout.room.size[2]])
-    plain = given.get("walls", _luminance(role_colour("wall", "")))
-    surfaces = [given.get("floor", _luminance(role_colour("floor", ""))), given.get("ceiling", 0.8)]
+    plain = given.get("walls", _usual("wall"))
+    surfaces = [given.get("floor", _usual("floor")), given.get("ceiling", 0.8)]
     surfaces += [given.get(wall.id, plain) for wall in walls]
     return Space(
         floor=np.array(floor, dtype=float),
         height=height,
         walls=walls,
-        boxes=_boxes([p for p in layout.proxies if not _is_thin(p) and _counts(p)], given),
+        boxes=furniture_boxes(layout.proxies, given),
+        veils=veils_of(layout.proxies),
         albedo=np.array(surfaces, dtype=float),
         layout=layout,
     )
+
+
+def _usual(part: str) -> float:
+    return float(luminance(np.array(role_colour(part, "")[:3])))
 
 
 def _faces(run: WallRun, holes: list[Hole]) -> list[Wall]:
@@ -248,43 +209,6 @@ def _faces(run: WallRun, holes: list[Hole]) -> list[Wall]:
     return faces
 
 
-def _is_thin(proxy: ProxyLine) -> bool:
-    """Whether light passes it by: rugs, curtains, lamps, leaves."""
-    words = f"{proxy.category} {proxy.label}".lower()
-    return proxy.size[2] < FLAT or any(word in words.split() for word in _THIN) or proxy.placement == "ceiling"
-
-
-def _counts(proxy: ProxyLine) -> bool:
-    """Whether it is large enough to matter for light and looks."""
-    w, d, h = proxy.size
-    return proxy.salience == "major" or w * d * h > _SMALL
-
-
-def _boxes(proxies: list[ProxyLine], given: dict[str, float]) -> Boxes:
-    """A box for each object; tables are their tops, since light and looks pass under them."""
-    rows = []
-    for p in proxies:
-        x, y, z = p.centre
-        w, d, h = p.size
-        family = category_family(p.category)
-        if family == "table" and p.placement == "floor" and h > 0.3 and "nightstand" not in p.category.lower():
-            z, h = z + h / 2 - _SLAB / 2, _SLAB
-        light = given.get(p.id, _luminance(role_colour("", family)))
-        rows.append((p.id, (x, y, z), (w / 2, d / 2, h / 2), math.radians(p.yaw), light))
-    return Boxes(
-        centres=np.array([r[1] for r in rows], dtype=float).reshape(-1, 3),
-        halves=np.array([r[2] for r in rows], dtype=float).reshape(-1, 3),
-        cosines=np.cos([r[3] for r in rows]),
-        sines=np.sin([r[3] for r in rows]),
-        albedo=np.array([r[4] for r in rows], dtype=float),
-        owners=tuple(r[0] for r in rows),
-    )
-
-
-def _luminance(colour: tuple[float, float, float, float]) -> float:
-    return 0.2126 * colour[0] + 0.7152 * colour[1] + 0.0722 * colour[2]
-
-
 def inside(floor: Floats, points: Floats) -> Bools:
     """Which points (N, 2) lie within the floor's outline."""
     x, y = points[:, 0], points[:, 1]
@@ -299,7 +223,7 @@ def inside(floor: Floats, points: Floats) -> Bools:
 
 def from_walls(floor: Floats, points: Floats) -> Floats:
     """Distance of points (N, 2) from the floor's outline, metres."""
-    best = np.full(len(points), _FAR)
+    best = np.full(len(points), FAR)
     for a, b in zip(floor, np.roll(floor, -1, axis=0), strict=True):
         edge = b - a
         t = np.clip(((points - a) @ edge) / max(float(edge @ edge), 1e-12), 0.0, 1.0)

@@ -10,9 +10,10 @@ import numpy as np
 
 from ..artifacts.layout import WindowLine
 from ..geometry.polygon import Floats
+from .bulk import Bools
 from .lights import Sun, window_face
 from .measure import Places
-from .space import Bools, Space
+from .space import Space
 
 SURE = 0.25
 """Correlation above which the picture is believed."""

@@ -217,8 +217,9 @@ def _finished(
     lit = make_lights(
         space, decision.style, shapes, decision.lamps, decision.windows, decision.sun, tint, decision.warmth
     )
-    own_lights = levelled(space, [*layout.lights, *lit.lights], lit.world.strength, places, transform, look)
-    own_lights, world = _in_colour(layout, record, own_lights[len(layout.lights) :], lit.world, places, tint, transform)
+    held = len(layout.lights)
+    own_lights = levelled(space, [*layout.lights, *lit.lights], lit.world.strength, places, transform, look, held)
+    own_lights, world = _in_colour(layout, record, own_lights[held:], lit.world, places, tint, transform)
     lights = [*layout.lights, *own_lights]
     exposure, brightness = matched(space, lights, world.strength, places, transform, look)
     seen = surround(view.reference) if places is not None else None

@@ -18,14 +18,17 @@ from .structure import contrast_of, direction_of
 MARGIN = 0.12
 """Share of a side that is looked at beyond it, since places are not exact."""
 LEAST_SEEN = 0.25
-MOST_GUESSED: dict[TextureKind, float] = {"rug": 0.35, "cloth": 0.35, "picture": 0.25, "screen": 0.25}
-"""What hides a rug in the picture hides it in the room too; what hangs on a wall is looked at from elsewhere."""
+MOST_GUESSED: dict[TextureKind, float] = {"rug": 0.65, "cloth": 0.35, "picture": 0.25, "screen": 0.25}
+"""What stands on a rug hides it in the room as in the picture; what hangs on a wall is looked at from elsewhere."""
 LEAST_ACROSS: dict[TextureKind, float] = {"rug": 36.0, "cloth": 36.0, "picture": 20.0, "screen": 40.0}
 """Pixels of the reference picture that the shorter side must have, where the picture is least clear."""
 _STRIPED = 0.06
 _SHADOWED = 5
 _PLAIN_COVER = 0.045
 _LIGHT: dict[TextureKind, float] = {"rug": 0.5, "cloth": 0.5, "picture": 0.3, "screen": 0.0}
+"""How much of what changes slowly over it is light, and taken out."""
+_LARGE, _LIGHT_ON_LARGE = 1.5, 0.9
+"""Over rugs whose shorter side is so many metres, what changes slowly is the room's light; patterns are smaller."""
 
 
 def decor_texture(shown: Shown, face: Face, kind: TextureKind, without: Collection[str], round_: bool = False) -> Flat:
@@ -52,7 +55,8 @@ def decor_texture(shown: Shown, face: Face, kind: TextureKind, without: Collecti
     known = float(seen.sum() / max(1, int(inside.sum())))
     if known < LEAST_SEEN:
         raise NotUsable(f"Other things hide {100 - 100 * known:.0f} % of it.")
-    even = flattened(wide.pixels, seen, 0.4 * min(seen.shape), _LIGHT[kind])
+    light = _LIGHT_ON_LARGE if kind == "rug" and min(face.size) > _LARGE and not round_ else _LIGHT[kind]
+    even = flattened(wide.pixels, seen, 0.4 * min(seen.shape), light)
     whole = filled(even, seen, round_, kind in ("rug", "cloth"))
     if whole.guessed > MOST_GUESSED[kind]:
         raise NotUsable("Too much of it is hidden, and it does not repeat itself.")

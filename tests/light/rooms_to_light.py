@@ -35,5 +35,5 @@ def thing(
 ) -> ProxyLine:
     """Something that stands on the floor."""
     return ProxyLine.model_validate(
-        {"id": name, "category": category, "centre": (*at, size[2] / 2), "size": size, **more}
+        {"id": name, "category": category, "centre": (*at, size[2] / 2), "size": size} | more
     )

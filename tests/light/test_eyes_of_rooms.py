@@ -189,7 +189,7 @@ def test_nobody_stands_in_an_open_leaf() -> None:
     space = space_of(layout)
     lines, _ = eye_cameras(space)
     assert lines
-    _, centre, half, yaw = open_leaves(layout)[0]
+    _, centre, half, yaw, _ = open_leaves(layout)[0]
     c, s = math.cos(math.radians(yaw)), math.sin(math.radians(yaw))
     for line in lines:
         at = np.array(line.matrix).reshape(4, 4)[:3, 3]

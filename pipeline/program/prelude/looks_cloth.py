@@ -25,7 +25,7 @@ def weave(size: float) -> Map:
 
 def sheer_inputs(sheer: float) -> dict[str, Any]:
     """What lets light through thin cloth: holes between its threads."""
-    return {"alpha": 1 - 0.75 * sheer, "through": sheer} if sheer else {}
+    return {"alpha": 1 - 0.9 * sheer**0.5, "through": sheer} if sheer else {}
 
 
 def fabric(color: Any = "#B9B4AA", size: Any = 0.003, mottle: Any = 0.4, sheer: Any = 0) -> Look:
