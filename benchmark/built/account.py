@@ -20,9 +20,12 @@ from code_as_room.pipeline.run_corrections import edits_of
 
 from ..metrics import compare, load_result, load_truth
 from ..metrics.runs import shapes_of
-from .bodies import Body, BuiltRoom
+from .bodies import Body, BuiltRoom, Floats
+from .look import Look
 
 DONE = ("detailed", "placed")
+LEAST_SEEN = 0.02
+"""Share of a thing's surface that the camera must see for the picture to show it; its sides and its underside are never seen."""
 
 
 @dataclass(frozen=True)
@@ -71,25 +74,34 @@ def _is_lost(entry: LedgerEntry, name: str | None, room: BuiltRoom) -> bool:
 
 
 def shown_distances(memory: Memory, room: BuiltRoom) -> dict[str, float]:
-    """Metres between where small things stand and where their boxes in the picture are, at the height of their middles."""
+    """Metres between where small things are seen and where their boxes in the picture are, at the height of their middles.
+
+    Boxes in answers go round what is seen of a thing, or round where all of it must be: the nearer of the two counts. What
+    other things hide from the camera is nowhere in the picture, and has no figure.
+    """
     analysis, calibration = memory.latest(SceneAnalysis), memory.latest(Calibration)
     if analysis is None or calibration is None:
         return {}
     edits = edits_of(memory)
+    look = Look.of(calibration.camera, room)
     found = {}
     for item in analysis.objects:
         body = room.things.get(name_now(edits, item.id) or "")
         if body is None or body.placement != "surface" or item.box is None:
             continue
-        distance = _apart(calibration.camera, body, item.box.centre)
-        if distance is not None:
-            found[body.id] = distance
+        seen = look.seen_of(body)
+        if len(seen) < LEAST_SEEN * len(body.skin):
+            continue
+        distances = [_apart(calibration.camera, body, points, item.box.centre) for points in (body.points, seen)]
+        known = [distance for distance in distances if distance is not None]
+        if known:
+            found[body.id] = min(known)
     return found
 
 
-def _apart(camera: CameraModel, body: Body, wanted: tuple[float, float]) -> float | None:
-    """Metres on the level of a thing's middle between the middle of its outline in the picture and a picture point."""
-    seen = project(camera, body.points)
+def _apart(camera: CameraModel, body: Body, points: Floats, wanted: tuple[float, float]) -> float | None:
+    """Metres on the level of a thing's middle between the middle of points' outline in the picture and a picture point."""
+    seen = project(camera, points)
     middle = (seen.min(axis=0) + seen.max(axis=0)) / 2
     level = float((body.low[2] + body.high[2]) / 2)
     own, other = to_plane(camera, [middle, wanted], level)

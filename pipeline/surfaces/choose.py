@@ -22,6 +22,7 @@ from ..program.prelude.shape import Shape
 from .cover import below, carried, lain
 from .find import Surface, support_surfaces
 from .rasters import Samples, sample
+from .rays import room_beside
 from .seat import CLOSE, ROUND, Seat, find_seat, occupied
 from .settle import FINE, drop
 
@@ -41,6 +42,8 @@ LYING = 0.02
 """A thing stands on another when its base is within this many metres of the other's surface."""
 
 
+NARROW, MOST_NARROWED = 0.001, 0.12
+"""Metres that are left beside a thing between two boards, and the share of its width by which it is made to fit there."""
 _SOFT = re.compile(r"\b(pillows?|cushions?|bolsters?)\b", re.IGNORECASE)
 
 
@@ -124,7 +127,9 @@ class Carriers:
                 self._take(other, parent)
 
     def spread_on(self, proxy: ProxyLine, parent: ProxyLine) -> Surface | None:
-        """The surface over which a thing is spread, None where it stands on it or hangs from it."""
+        """The surface over which a thing is spread, None where it stands on it, leans on it or hangs from it."""
+        if _is_soft(proxy.category):
+            return None
         outline = proxy.size[0] * proxy.size[1]
         wide = [s for s in self.surfaces(parent.id) if s.open_share > 0.3 and s.area >= 0.6 * outline]
         largest = max(wide, key=lambda s: s.area, default=None)
@@ -166,10 +171,31 @@ class Carriers:
         below = self._fine[carrier.id]
         if below is None or proxy.id not in self.shapes:
             return seated
+        proxy = proxy if _is_soft(proxy.category) else self._narrowed(proxy, carrier)
+        seated = replace(seated, proxy=proxy)
         place = (*to_local(carrier, proxy.centre[:2]), base_of(proxy) - base_of(carrier))
         down = drop(self.shapes[proxy.id], seated.scale, below, place, proxy.yaw - carrier.yaw)
         centre = (*proxy.centre[:2], proxy.centre[2] - down)
         return replace(seated, proxy=proxy.model_copy(update={"centre": centre}))
+
+    def _narrowed(self, proxy: ProxyLine, carrier: ProxyLine) -> ProxyLine:
+        """A thing that reaches into what is on both sides of it, between them: rasters are coarser than boards are thin."""
+        size = np.array(proxy.size)
+        turn = math.radians(proxy.yaw - carrier.yaw)
+        for axis in (0, 1):
+            x, y = to_local(carrier, proxy.centre[:2])
+            middle = np.array((x, y, proxy.centre[2] - base_of(carrier)))
+            before, after = room_beside(self.shapes.get(carrier.id, ()), middle, size, turn, axis)
+            free = before + after - 2 * NARROW
+            if not (1 - MOST_NARROWED) * size[axis] <= free < size[axis]:
+                continue
+            size[axis] = free
+            shift = (after - before) / 2
+            way = math.radians(proxy.yaw) + axis * math.pi / 2
+            centre = proxy.centre[0] + shift * math.cos(way), proxy.centre[1] + shift * math.sin(way), proxy.centre[2]
+            width, depth, height = (float(v) for v in size)
+            proxy = proxy.model_copy(update={"size": (width, depth, height), "centre": centre})
+        return proxy
 
     def _offers(
         self, item: DetectedObject, calibration: Calibration, carrier: ProxyLine, surface: Surface
@@ -179,7 +205,8 @@ class Carriers:
         wanted = to_local(carrier, lifted.centre[:2])
         turn = lifted.yaw - carrier.yaw
         near = REACH + max(lifted.size[:2]) / 2
-        tries = ((near, ROUND), (near, CLOSE), (math.inf, ROUND), (math.inf, CLOSE))
+        between = (ROUND + CLOSE) / 2
+        tries = ((near, ROUND), (near, between), (near, CLOSE), (math.inf, ROUND), (math.inf, CLOSE))
         seats = (find_seat(surface, wanted, lifted.size, turn, *limits) for limits in tries)
         seat = next((s for s in seats if s is not None), None)
         if seat is None:

@@ -7,13 +7,15 @@ from pathlib import Path
 
 import bpy
 import pytest
-from code_as_room.pipeline.artifacts.analysis import SceneAnalysis
+from code_as_room.pipeline.artifacts.analysis import Calibration, SceneAnalysis
 from code_as_room.pipeline.artifacts.layout import LayoutProgram, LedgerEntry, Score
+from code_as_room.pipeline.geometry.camera import camera_looking_at
+from code_as_room.pipeline.geometry.footprint import image_box_of
 from code_as_room.pipeline.memory import EntryMeta, Memory
 from code_as_room.pipeline.program.evaluate import evaluate
 from code_as_room.pipeline.scene.realise import realise_record
 
-from benchmark.built.account import ledger_of
+from benchmark.built.account import ledger_of, shown_distances
 from benchmark.built.bodies import BuiltRoom, read_room
 from benchmark.built.contact import contact_of
 from benchmark.built.solids import crossings, filling_of, loose_parts
@@ -113,6 +115,31 @@ def test_the_ledger_closes_only_when_everything_is_there_or_has_a_reason(analysi
     assert not closes("detailed", "")  # it is not in the room
     assert not closes("dropped", "") and not closes("deferred", "no place yet")
     assert closes("dropped", "no surface for it was found")
+
+
+def test_things_are_held_against_the_picture_by_what_of_them_is_seen(analysis: SceneAnalysis) -> None:
+    """A cup under a table top is nowhere in the picture; one that comes out from under it by half is where its half is."""
+    camera = camera_looking_at("perspective", (0, 0, 5), (0, 0, 0), 50.0, (800, 800))
+    room = built(TABLE, cup(0.72, -0.3, "open"), cup(0.3, 0.1, "hidden"), cup(0.3, 0.56, "half"))
+    floor = [(-2.0, -2.0), (2.0, -2.0), (2.0, 2.0), (-2.0, 2.0)]
+    calibration = Calibration(camera=camera, floor=floor, height=2.5, error_px=0.0, scale_source="truth")
+    # The picture's boxes go round what is seen: of the half one, what lies right of the table's edge.
+    places = {"hidden": (-0.4, 0.1, 0.3), "half": (0.572, 0.1, 0.35), "open": (-0.3, 0.1, 0.77)}
+    boxes = {
+        name: image_box_of(camera, at, (0.056 if name == "half" else 0.08, 0.08, 0.1), 0.0)
+        for name, at in places.items()
+    }
+    kept = analysis.objects[0]
+    objects = [kept.model_copy(update={"id": name, "placement": "surface", "box": box}) for name, box in boxes.items()]
+    memory = Memory()
+    memory.append("s01_analysis", analysis.model_copy(update={"objects": objects}), EntryMeta(time="t"))
+    memory.append("s01_analysis", calibration, EntryMeta(time="t"))
+    found = shown_distances(memory, room)
+    assert set(found) == {"half", "open"}
+    assert found["open"] < 0.01 and found["half"] < 0.02
+    objects[2] = objects[2].model_copy(update={"box": image_box_of(camera, (-0.1, 0.1, 0.77), (0.08, 0.08, 0.1), 0.0)})
+    memory.append("s01_analysis", analysis.model_copy(update={"objects": objects}), EntryMeta(time="t"))
+    assert shown_distances(memory, room)["open"] == pytest.approx(0.2, abs=0.02)
 
 
 def test_a_file_is_measured_as_a_whole(tmp_path: Path) -> None:

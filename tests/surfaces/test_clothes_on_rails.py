@@ -26,8 +26,8 @@ def row(category: str = "row of shirts", height: float = 0.9, at: tuple[float, f
     )
 
 
-def hung(thing: ProxyLine, shapes: list[Shape], *others: ProxyLine) -> ProxyLine | None:
-    carriers = Carriers({"wardrobe_1": shapes})
+def hung(thing: ProxyLine, shapes: list[Shape], *others: ProxyLine, own: list[Shape] | None = None) -> ProxyLine | None:
+    carriers = Carriers({"wardrobe_1": shapes, "a": own or []})
     for proxy in (WARDROBE, *others):
         carriers.proxies[proxy.id] = proxy
     return under_rail(thing, WARDROBE, carriers)
@@ -41,16 +41,32 @@ def ends(thing: ProxyLine | None) -> tuple[float, float]:
 @pytest.mark.parametrize("height", [0.5, 0.9, 1.4, 1.6])
 def test_a_row_of_clothes_hangs_from_its_rail_down_to_the_board_and_never_lies_on_top(height: float) -> None:
     found = hung(row(height=height), [TOP, BOARD, RAIL])
-    assert ends(found) == pytest.approx((0.5, HOOK), abs=1e-6)
+    assert ends(found) == pytest.approx((0.5, HOOK), abs=0.003)
     assert found is not None and found.centre[:2] == row().centre[:2] and found.size[:2] == row().size[:2]
+
+
+@pytest.mark.parametrize(("wire", "off"), [(0.004, 0.0), (0.009, 0.04), (0.02, -0.05)])
+def test_hooks_rest_on_the_rail_however_thick_they_are_and_wherever_they_stand_out(wire: float, off: float) -> None:
+    # A garment whose hook is a bar across the rail, `off` metres before its middle.
+    garment = [
+        replace(box((0.4, 0.4, 0.8)), part="coat"),
+        *(replace(box((0.003, 0.004, wire), at=(0.1, off + y, 0.9 - wire)), part="hook") for y in (-0.01, 0, 0.01)),
+    ]
+    found = hung(row(at=(0.97, 2.3)).model_copy(update={"yaw": 90.0}), [TOP, BOARD, RAIL], own=garment)
+    assert found is not None
+    scale = found.size[2] / 0.9
+    hook = found.centre[2] - found.size[2] / 2 + scale * (0.9 - wire)
+    assert hook == pytest.approx(1.912, abs=0.004)
+    # The wardrobe is turned by 90 degrees: its depth runs against x.
+    assert found.centre[0] - off == pytest.approx(1.0, abs=0.012) and found.centre[1] == pytest.approx(2.3)
 
 
 def test_clothes_hang_over_the_shoes_below_them() -> None:
     shoes = ProxyLine(id="shoes_1", category="pair of shoes", centre=(1.0, 2.3, 0.56), size=(0.3, 0.25, 0.12),
                       placement="surface", parent="wardrobe_1")  # fmt: skip
-    assert ends(hung(row(), [TOP, BOARD, RAIL], shoes)) == pytest.approx((0.62, HOOK), abs=1e-6)
+    assert ends(hung(row(), [TOP, BOARD, RAIL], shoes)) == pytest.approx((0.62, HOOK), abs=0.003)
     aside = shoes.model_copy(update={"centre": (1.0, 1.4, 0.56)})
-    assert ends(hung(row(), [TOP, BOARD, RAIL], aside)) == pytest.approx((0.5, HOOK), abs=1e-6)
+    assert ends(hung(row(), [TOP, BOARD, RAIL], aside)) == pytest.approx((0.5, HOOK), abs=0.003)
 
 
 @pytest.mark.parametrize(
