@@ -20,7 +20,7 @@ from .space import SKY, Space
 
 RAYS = 24
 """Directions that are followed from each place; few, since hundreds of places are averaged."""
-_ON_LIGHT = (4, 3)  # places along and across each light that are looked at from a place
+_ON_LIGHT = (3, 2)  # places along and across each light that are looked at from a place
 _OFF = 2e-3  # metres above a surface
 _MOST_GIVEN_BACK = 0.85
 _SPREAD = 1.6

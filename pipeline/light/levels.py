@@ -30,7 +30,7 @@ _STAY = 0.005
 """How much staying as the style says counts, beside all places together."""
 _FAR_OFF = 0.25
 """Places that are farther off than this part of their light count less: rugs that nobody said, shadows of what is not there."""
-_ROUNDS, _STEPS = 12, 40
+_ROUNDS, _STEPS = 8, 12
 
 
 def levelled(
