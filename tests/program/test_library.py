@@ -81,3 +81,19 @@ def test_the_catalogue_finds_by_words(category: str, label: str, wanted: str) ->
 
 def test_what_is_not_there_is_not_found() -> None:
     assert catalogue.find("zeppelin") == []
+
+
+@pytest.mark.parametrize(
+    ("size", "stands"), [((0.95, 0.2, 0.26), True), ((0.5, 0.2, 0.24), True), ((0.26, 0.2, 0.14), False)]
+)
+def test_books_stand_where_they_are_a_row_and_lie_where_they_are_a_pile(
+    size: tuple[float, float, float], stands: bool
+) -> None:
+    """Rows of books in a bookcase were one pile, drawn out to a metre."""
+    covers = [s.vertices for s in made("book_stack", size) if s.part == "cover"]
+    extents = [np.ptp(np.concatenate(covers[i : i + 3]), axis=0) for i in range(0, len(covers), 3)]
+    thin = [int(np.argmin(extent)) for extent in extents]
+    assert set(thin) == {0 if stands else 2}
+    # The boards that hold the spines are where one looks at a shelf.
+    spines = [c for c in covers if stands and np.ptp(c[:, 1]) < 0.02]
+    assert all(c[:, 1].max() < 0 for c in spines) and (not stands or len(spines) == len(covers) // 3)
