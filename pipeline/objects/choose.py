@@ -75,21 +75,29 @@ _COMMON = frozenset(
 )
 
 
+_PILLOW, _LEAN = "pillow", 66
+"""The word of pieces that lean, and by how many degrees."""
+
+
 @dataclass(frozen=True)
 class Choice:
     """A library piece with its parameters.
 
     Attributes:
         score: how well words and size fit, 0 to 1. parameters: name -> value, only those that differ from the default.
+        leaning: made lying and turned up, as a cushion that is higher than deep leans: drawn out it would be an egg.
     """
 
     piece: Piece
     score: float
     parameters: Mapping[str, Any] = field(default_factory=dict)
+    leaning: bool = False
 
     def call(self, size: str = "size") -> str:
         """The call of the piece in the room language."""
-        return f"{self.piece.name}({', '.join([size, *(f'{k}={literal(v)}' for k, v in self.parameters.items())])})"
+        made = f"({size}[0], {size}[2], 0.6 * {size}[1])" if self.leaning else size
+        call = f"{self.piece.name}({', '.join([made, *(f'{k}={literal(v)}' for k, v in self.parameters.items())])})"
+        return f'fill(turn({call}, {_LEAN}, "x"), {size})' if self.leaning else call
 
 
 def candidates(proxy: ProxyLine, words: str = "", family: str = "", carried: Sequence[str] = ()) -> list[Choice]:
@@ -121,7 +129,8 @@ def candidates(proxy: ProxyLine, words: str = "", family: str = "", carried: Seq
             score = max(score, _KIND)
         total = score + said - _SIZE_WEIGHT * misfit(proxy.size, piece.typical)
         if score >= LEAST * 0.6 and (piece.name not in best or best[piece.name].score < total):
-            best[piece.name] = Choice(piece, total, parameters_for(piece, proxy, label, carried))
+            leaning = _PILLOW in piece.words and proxy.size[2] > proxy.size[1]
+            best[piece.name] = Choice(piece, total, parameters_for(piece, proxy, label, carried), leaning)
     return sorted(best.values(), key=lambda c: (-c.score, c.piece.name))
 
 

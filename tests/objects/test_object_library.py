@@ -17,7 +17,7 @@ from code_as_room.pipeline.artifacts.objects import (
 )
 from code_as_room.pipeline.objects.alike import alike
 from code_as_room.pipeline.objects.choose import candidates
-from code_as_room.pipeline.objects.library import asked_piece, best_piece
+from code_as_room.pipeline.objects.library import asked_piece, best_piece, shapes_of
 from code_as_room.pipeline.objects.text import (
     compose,
     function_name,
@@ -197,3 +197,20 @@ def test_own_code_is_read_with_its_helpers_and_without_the_library() -> None:
     )
     code = read_modelling(own).code_of("thing_1")
     assert code.startswith("def ") and "def chair(" not in code
+
+
+def test_a_cushion_that_is_higher_than_deep_leans_and_is_no_egg() -> None:
+    def cushion(size: tuple[float, float, float]) -> np.ndarray:
+        proxy = ProxyLine(id="cushion_1", category="cushion", centre=(0, 0, size[2] / 2), size=size)
+        made = shapes_of(candidates(proxy)[0], size)
+        points = np.concatenate([s.vertices for s in made])
+        assert np.allclose(np.ptp(points, axis=0), size, atol=2e-3)
+        return points
+
+    leaning = cushion((0.58, 0.2, 0.36))
+    middle = leaning[np.abs(leaning[:, 2] - 0.18) < 0.03]
+    assert np.ptp(middle[:, 1]) < 0.16, "at half its height it is as thick as a cushion, not as deep as its box"
+    low, high = leaning[leaning[:, 2] < 0.08], leaning[leaning[:, 2] > 0.28]
+    assert high[:, 1].mean() > low[:, 1].mean() + 0.04, "it leans back"
+    lying = cushion((0.58, 0.4, 0.16))
+    assert abs(lying[lying[:, 2] > 0.1][:, 1].mean()) < 0.02
