@@ -17,7 +17,7 @@ SEEN_NODE = "What a camera sees"
 """Label of the world's node for what lies round the room and outside its windows (`scene/lighting.py`)."""
 _DAY = 0.6
 """On the screen, round the room; what is darker is an evening, and stays."""
-_SKY, _HUE = 0.95, (0.92, 1.0, 1.08)
+_SKY, _HUE = 0.88, (0.9, 1.0, 1.09)
 """On the screen: bright, but not burnt out, and blue enough to be a sky."""
 
 
