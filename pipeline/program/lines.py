@@ -182,7 +182,7 @@ def _literal(value: Any, decimals: int) -> str:
 
 
 def _number(value: float, decimals: int) -> str:
-    rounded = round(value, decimals)
+    rounded = round(float(value), decimals)  # numpy's own numbers print as np.float64(...)
     return repr(rounded).removesuffix(".0") if rounded else "0"
 
 

@@ -133,7 +133,7 @@ def _over_rail(proxy: ProxyLine, shapes: Sequence[Shape], carrier: ProxyLine, ra
     for index in np.flatnonzero(there & (heights > low[2] - 0.005))[:_MOST]:
         met = hits([rail], np.array((across[index], along[index], high[2] + 0.1)), np.array((0.0, 0.0, -1.0)))
         gaps += [heights[index] - (high[2] + 0.1 - float(met[0]))] if len(met) else []
-    gap = min(gaps, default=0.0)
+    gap = float(min(gaps, default=0.0))
     return gap if abs(gap) <= _HIGHEST else 0.0
 
 

@@ -118,3 +118,19 @@ build()
     outside = own.replace("    def door(u, v):\n        return (u, 0, v)\n", "")
     with pytest.raises(ProgramError, match="layout line"):
         parse_layout(ROOM + outside)
+
+
+def test_numbers_that_print_under_another_name_are_written_as_numbers() -> None:
+    """numpy 2, which newer Blenders have, prints its own floats as np.float64(...), and nothing could read that again."""
+
+    class Named(float):
+        def __repr__(self) -> str:
+            return f"np.float64({float(self)})"
+
+        def __round__(self, digits: int | None = None) -> Named:
+            return Named(round(float(self), digits or 0))
+
+    proxy = ProxyLine(id="a", category="chair", centre=(0.0, 0.0, 0.5), size=(1.0, 1.0, 1.0))
+    odd = proxy.model_copy(update={"size": (Named(0.25), Named(0.5), Named(1.0)), "yaw": Named(12.5)})
+    text = print_line(odd)
+    assert "np" not in text and "size=(0.25, 0.5, 1)" in text and "yaw=12.5" in text
