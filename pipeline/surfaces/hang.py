@@ -14,7 +14,7 @@ from ..geometry.polygon import Floats
 from ..program.prelude.shape import Shape
 from .choose import Carriers, base_of, to_local, to_room
 from .find import Surface
-from .rays import hits
+from .rays import faces_of, hits
 
 _CLOTHES = re.compile(
     r"\b(clothes|clothing|garments?|coats?|dress(es)?|shirts?|jackets?|suits?|blouses?)\b", re.IGNORECASE
@@ -129,9 +129,9 @@ def _over_rail(proxy: ProxyLine, shapes: Sequence[Shape], carrier: ProxyLine, ra
     along = y + points[:, 0] * math.sin(turn) + points[:, 1] * math.cos(turn)
     there = (across > low[0]) & (across < high[0]) & (along > low[1]) & (along < high[1])
     there &= np.abs(heights - (low[2] + high[2]) / 2) < _THICK
-    gaps = []
+    gaps, bar = [], faces_of([rail])
     for index in np.flatnonzero(there & (heights > low[2] - 0.005))[:_MOST]:
-        met = hits([rail], np.array((across[index], along[index], high[2] + 0.1)), np.array((0.0, 0.0, -1.0)))
+        met = hits(bar, np.array((across[index], along[index], high[2] + 0.1)), np.array((0.0, 0.0, -1.0)))
         gaps += [heights[index] - (high[2] + 0.1 - float(met[0]))] if len(met) else []
     gap = float(min(gaps, default=0.0))
     return gap if abs(gap) <= _HIGHEST else 0.0

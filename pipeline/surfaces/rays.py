@@ -16,12 +16,13 @@ from .rasters import Floats, triangles
 _EDGE = 1e-9
 
 
-def hits(shapes: Sequence[Shape], origin: Floats, way: Floats) -> Floats:
-    """Distances in rising order at which a ray (3,), (3,) goes through faces of shapes; `way` is a unit vector.
+def faces_of(shapes: Sequence[Shape]) -> Floats:
+    """The faces of shapes as triangles (T, 3, 3), for `hits`; concave faces are the fans that they are cut into."""
+    return triangles(shapes)[0]
 
-    Concave faces are taken as the fans that they are cut into.
-    """
-    corners, _, _ = triangles(shapes)
+
+def hits(corners: Floats, origin: Floats, way: Floats) -> Floats:
+    """Distances in rising order at which a ray (3,), (3,) goes through triangles (T, 3, 3); `way` is a unit vector."""
     if not len(corners):
         return np.zeros(0)
     a, edge, other = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
@@ -45,13 +46,14 @@ def room_beside(shapes: Sequence[Shape], middle: Floats, size: Floats, turn: flo
         middle: of the box; size: width, depth and height of it; turn: its yaw, radians. axis: 0 its width, 1 its depth.
     """
     axes = np.array(((np.cos(turn), np.sin(turn), 0.0), (-np.sin(turn), np.cos(turn), 0.0), (0.0, 0.0, 1.0)))
+    corners = faces_of(shapes)
     found = []
     for side in (-1.0, 1.0):
         nearest = np.inf
         for other in (-0.3, 0.3):
             for up in (-0.3, 0.0, 0.3):
                 origin = middle + other * size[1 - axis] * axes[1 - axis] + up * size[2] * axes[2]
-                met = hits(shapes, origin, side * axes[axis])
+                met = hits(corners, origin, side * axes[axis])
                 nearest = min(nearest, float(met[0])) if len(met) else nearest
         found.append(nearest)
     return found[0], found[1]

@@ -13,7 +13,7 @@ from code_as_room.pipeline.geometry.camera import camera_looking_at
 from code_as_room.pipeline.program.prelude.shape import Shape
 from code_as_room.pipeline.program.prelude.solids import box, sphere
 from code_as_room.pipeline.surfaces.choose import Carriers
-from code_as_room.pipeline.surfaces.rays import hits, room_beside
+from code_as_room.pipeline.surfaces.rays import faces_of, hits, room_beside
 
 CASE = [
     *(box((0.022, 0.3, 2.0), at=(x, 0, 0)) for x in (-0.489, 0.489)),
@@ -34,12 +34,12 @@ def seat(item: DetectedObject, own: list[Shape], carrier: ProxyLine, of: list[Sh
 
 
 def test_rays_meet_faces_where_they_are() -> None:
-    ball = [sphere(0.5)]
+    ball = faces_of([sphere(0.5)])
     way = np.array((1.0, 0.0, 0.0))
     near, far = hits(ball, np.array((-2.0, 0.01, 0.013)), way)
     assert near == pytest.approx(1.5, abs=0.01) and far == pytest.approx(2.5, abs=0.01)
     assert not len(hits(ball, np.array((-2.0, 0.6, 0.0)), way)) and not len(hits(ball, np.array((2.0, 0.0, 0.0)), way))
-    assert not len(hits([], np.zeros(3), way))
+    assert not len(hits(faces_of([]), np.zeros(3), way))
 
 
 @pytest.mark.parametrize("turn", [0.0, 37.0, 180.0])
