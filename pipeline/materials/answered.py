@@ -100,7 +100,7 @@ class Answered:
         entry = self.palette.get(said.material.strip().lower())
         family = family_of(entry.family if entry is not None else said.material)
         fixed = by_name(cell, category)
-        if fixed and family != fixed:
+        if (fixed and family != fixed) or (family in ("shade", "glow") and fallback.family == "linen"):
             return fallback
         code = self._colour(identifier, said, entry, fallback, family)
         if said.program.strip() and not fixed:

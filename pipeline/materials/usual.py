@@ -64,6 +64,13 @@ def usual(cell: Cell, described: ObjectDescription, category: str, object_family
     )
     family = plain.name if plain is not None else "plastic"
     options = dict(_options_of(plain.key)) if plain is not None else {}
+    veil = re.search(
+        r"\b(sheers?|voiles?|veils?)\b",
+        f"{phrase_of(cell, described)} {cell.part} {category}".replace("_", " ").lower(),
+    )
+    if not_lit(cell.role, object_family):
+        family, options = "linen", {}
+        veil = veil or re.search(r"curtain|drape", category.lower())
     fixed = by_name(cell, category)
     if fixed:
         return Choice(
@@ -83,7 +90,7 @@ def usual(cell: Cell, described: ObjectDescription, category: str, object_family
     colour = code or (plain.colour if plain is not None else "#A9A39B").lstrip("#")
     if family == "metal":
         colour, options = _metal(cell, phrase, colour, options)
-    elif family in ("linen", "fabric") and re.search(r"\b(sheer|voile|veil)\b", phrase):
+    elif family in ("linen", "fabric") and veil:
         options["sheer"] = "0.5"
     elif family in ("wood", "painted_wood", "plastic") and re.search(r"\b(gloss\w*|lacquered|polished)\b", phrase):
         options["gloss"] = "0.8"
@@ -94,6 +101,11 @@ def usual(cell: Cell, described: ObjectDescription, category: str, object_family
     return Choice(
         family, colour, tuple(sorted(options.items())), word=word, why=why, source="measured" if code else "usual"
     )
+
+
+def not_lit(role: str, object_family: str) -> bool:
+    """Whether a lamp shade's cloth is what something hangs or lies of that no lamp is in: it lets light through, and gives none."""
+    return role == "shade" and object_family == "textile"
 
 
 def may_be(family: str, other: str) -> bool:

@@ -4,18 +4,16 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Mapping, Sequence
 
 from ..artifacts.layout import ProxyLine
 from ..artifacts.objects import Descriptions, ObjectDescription
 from .colours import colour_distance
+from .rows import is_varied
 from .twins import other_colours
 
 _SIZE = math.log(1.12)
 _COLOUR = 0.13
-_VARIED = re.compile(r"\b(books?|magazines|clothes|clothing|garments?)\b", re.IGNORECASE)
-"""What is never twice the same: two rows of the same spines are seen to be copies at once."""
 _PLAIN = 0.8
 """Share of its main colour from which a thing is of one colour; others may be patterned."""
 
@@ -24,7 +22,8 @@ def alike(proxies: Sequence[ProxyLine], descriptions: Descriptions) -> dict[str,
     """The id of each object -> the id of the first one that is the same thing, which may be itself.
 
     Same category and placement, sizes within 12 %, and colours that look the same where they are known. Rows of
-    books and of clothes are never alike. Things that are mainly of one colour each may differ in it; `twins.py` gives each its own.
+    books and of clothes are never alike (`rows.py`). Things that are mainly of one colour each may differ in it;
+    `twins.py` gives each its own.
     """
     known = {d.id: d for d in descriptions.objects}
     empty = ObjectDescription(id="")
@@ -42,7 +41,7 @@ def alike(proxies: Sequence[ProxyLine], descriptions: Descriptions) -> dict[str,
 def _same(a: ProxyLine, b: ProxyLine) -> bool:
     if (a.category.lower(), a.placement, a.shape) != (b.category.lower(), b.placement, b.shape):
         return False
-    if _VARIED.search(a.category.replace("_", " ")):
+    if is_varied(a):
         return False
     return all(abs(math.log(max(x, 1e-3) / max(y, 1e-3))) < _SIZE for x, y in zip(a.size, b.size, strict=True))
 

@@ -23,16 +23,16 @@ _INTRODUCTION = """\
 One def per object returns a (nested) list of shapes.
 Frame: metres, origin at the centre of the object's base, +X its width, FRONT = -Y, +Z up. Fill the given (width, depth,
 height) and stand on z = 0.
-Expressions, slices, if, for, comprehensions, def with defaults, lambda, f-strings. NO imports, attributes or methods, while,
+Expressions (**, a if b else c), slices, if, for, comprehensions, defs in defs, lambda, f-strings. NO imports, attributes or methods, while,
 try, classes, sets, *args, recursion, _names. Also: keys(dict) values(dict) items(dict) abs min max round sum
 len range zip enumerate sorted reversed int float str bool list tuple any all; {math} (radians) pi tau.
 A def must not call a function whose name it uses for a value.
 Functions return new shapes; operations take one shape or a (nested) list. Makers take at= (the centre of solids, cushions
 and curtains; the rest is moved by it), soft and random ones seed=, round ones segments= (sphere and torus
 rings= too), {axial} axis= "x", "y" or "z".
-Radii and edges too large are cut to what fits. Every shape needs part(name, shapes, material=role). Roles: {roles};
-"wood #8A5A3C" has a colour of its own.
-Parts touch or overlap by 1-2 mm. At most 12 000 vertices an object; segments 12-16 for legs, 32-48 for what is large.
+Too large radii and edges are cut. Every shape needs part(name, shapes, material=role). Roles: {roles};
+"wood #8A5A3C" has its own colour.
+Parts touch or overlap by 1-2 mm. At most 12 000 vertices; segments 12-16 for legs, 32-48 for what is large.
 """
 
 _SECTIONS: tuple[tuple[str, tuple[str, ...]], ...] = (

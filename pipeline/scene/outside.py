@@ -17,8 +17,14 @@ SEEN_NODE = "What a camera sees"
 """Label of the world's node for what lies round the room and outside its windows (`scene/lighting.py`)."""
 _DAY = 0.6
 """On the screen, round the room; what is darker is an evening, and stays."""
-_SKY, _HUE = 0.88, (0.9, 1.0, 1.09)
-"""On the screen: bright, but not burnt out, and blue enough to be a sky."""
+_SKY: tuple[tuple[float, float, tuple[float, float, float]], ...] = (
+    (-0.3, 0.74, (1.0, 1.0, 0.94)), (-0.03, 0.83, (0.97, 1.0, 1.0)), (0.04, 0.9, (0.93, 1.0, 1.06)),
+    (0.3, 0.84, (0.74, 0.96, 1.24)),
+)  # fmt: skip
+"""Height of what is looked at (the sine of its angle above the horizon), how bright it is on the screen, and its hue.
+
+Ground, haze, the horizon and the sky: bright, but not burnt out, and different enough that a pane is not a lamp.
+"""
 
 
 def brighten_outside(stage: Any, exposure: float) -> Any | None:
@@ -38,12 +44,31 @@ def brighten_outside(stage: Any, exposure: float) -> Any | None:
     if float(shown(np.array([now]), transform, look)[0]) < _DAY:
         return None
     world = stage.world.copy()
-    sky = scene_light(np.array([_SKY]), transform, look) * np.array(_HUE) / 2.0**view.exposure
-    own: Any = _seen(world)
-    former = np.array(own.inputs["Color"].default_value[:3])
-    own.inputs["Color"].default_value = (*(float(v) for v in np.maximum(sky, former)), 1.0)
+    bright = scene_light(np.array([light for _, light, _ in _SKY]), transform, look)
+    colours = bright[:, None] * np.array([hue for _, _, hue in _SKY]) / 2.0**view.exposure
+    _shade(world, [height for height, _, _ in _SKY], colours)
     stage.world = world
     return world
+
+
+def _shade(world: Any, heights: list[float], colours: np.ndarray) -> None:
+    """Let what a camera sees go from colour to colour with the height of what it looks at."""
+    tree, seen = world.node_tree, _seen(world)
+    place, parts, height, ramp = (
+        tree.nodes.new(f"ShaderNode{kind}") for kind in ("TexCoord", "SeparateXYZ", "MapRange", "ValToRGB")
+    )
+    tree.links.new(place.outputs["Generated"], parts.inputs["Vector"])
+    tree.links.new(parts.outputs["Z"], height.inputs["Value"])
+    height.inputs["From Min"].default_value, height.inputs["From Max"].default_value = -1.0, 1.0
+    tree.links.new(height.outputs["Result"], ramp.inputs["Fac"])
+    stops = ramp.color_ramp.elements
+    while len(stops) < len(heights):
+        stops.new(1.0)
+    for stop, at in zip(stops, heights, strict=True):
+        stop.position = (at + 1.0) / 2.0
+    for stop, colour in zip(stops, colours, strict=True):
+        stop.color = (*(float(v) for v in colour), 1.0)
+    tree.links.new(ramp.outputs["Color"], seen.inputs["Color"])
 
 
 def _seen(world: Any) -> Any | None:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -22,6 +22,7 @@ from ..objects.detailing import Detailing
 from ..objects.examples import nearest_programs
 from ..objects.eyes import eyes_on
 from ..objects.mending import mended
+from ..objects.rows import another, rows
 from ..objects.written import FAR, STRETCH, Written, take_program
 from ..program.prelude.palette import category_family
 from ..program.reference import reference
@@ -93,7 +94,9 @@ def _facts(view: View, detailing: Detailing, proxy: ProxyLine) -> tuple[str, ...
 def write_programs(view: View, detailing: Detailing) -> Asking:
     """Programs for the larger objects in two rounds: written from the crops, then mended once after a look at renders."""
     drafted, looked = (view.settings.get("objects") == word for word in (DRAFTED, LOOKED))
-    chosen = sorted(detailing.todo, key=lambda p: -_weight(p))[: None if drafted else MOST_PROGRAMS]
+    followers = _followers(view, detailing)
+    todo = [p for p in detailing.todo if p.id not in followers]
+    chosen = sorted(todo, key=lambda p: -_weight(p))[: None if drafted else MOST_PROGRAMS]
     chosen.sort(key=lambda p: (category_family(p.category), p.category, p.id))
     groups = batches(chosen, BATCH)
     requests = tuple(_first_request(view, detailing, n, batch) for n, batch in enumerate(groups, 1))
@@ -133,6 +136,21 @@ def write_programs(view: View, detailing: Detailing) -> Asking:
             draft.keep(detailing)
         elif draft.made is not None or not detailing.leave(draft.proxy.id):
             draft.keep_drafted(detailing)
+    _make_rows(detailing, followers)
+
+
+def _followers(view: View, detailing: Detailing) -> dict[str, str]:
+    """Rows that another row's program makes, and that one; a draft has its own program for each."""
+    return {} if view.settings.get("objects") in (DRAFTED, LOOKED) else rows(detailing.todo)
+
+
+def _make_rows(detailing: Detailing, followers: Mapping[str, str]) -> None:
+    """Rows of books and of clothes that one program makes: each gets it with a seed of its own."""
+    for seed, (identifier, first) in enumerate(followers.items(), 2):
+        proxy, written = detailing.layout.proxy(identifier), detailing.written.get(first)
+        made = another(written, proxy, detailing.names[identifier], seed) if proxy and written else None
+        if made is not None and made.checked.penalty < 1.0:
+            detailing.written[identifier] = made
 
 
 def _weight(proxy: ProxyLine) -> float:
@@ -227,7 +245,7 @@ def _first_request(view: View, detailing: Detailing, number: int, batch: Sequenc
     shown = [(p, box) for p in batch if (box := boxes[p.id]) is not None]
     numbers = {p.id: n for n, p in enumerate(batch, 1)}
     whole = view.reference.with_boxes_drawn([(str(numbers[p.id]), box) for p, box in shown], long_side=900)
-    lines = [f"{_line(view, detailing, numbers[p.id], p)}; name the def {detailing.names[p.id]}" for p in batch]
+    lines = [f"{_line(view, detailing, numbers[p.id], p)}; {_def_words(view, detailing, p)}" for p in batch]
     return Request(
         key=f"06_programs/{number}",
         prompt="06_programs",
@@ -241,6 +259,14 @@ def _first_request(view: View, detailing: Detailing, number: int, batch: Sequenc
         },
         images=(Picture("room", whole), *(Picture(p.id, crop_of(view.reference, box)) for p, box in shown)),
     )
+
+
+def _def_words(view: View, detailing: Detailing, proxy: ProxyLine) -> str:
+    """What an object's def is to be called, and that it makes several rows."""
+    name, more = detailing.names[proxy.id], list(_followers(view, detailing).values()).count(proxy.id)
+    if not more:
+        return f"name the def {name}"
+    return f"it makes {more + 1} such rows, so def {name}(size, seed=1), and all that varies by rand((seed, ...))"
 
 
 def _second_request(view: View, detailing: Detailing, number: int, batch: Sequence[_Draft]) -> Request:
@@ -267,7 +293,8 @@ def _what(view: View, detailing: Detailing, proxy: ProxyLine) -> list[str]:
     line = object_line(0, proxy, detailing.described(proxy.id), parent).split("; ")
     kind = proxy.category.replace("_", " ")
     named = f"{kind} ({proxy.label})" if proxy.label and proxy.label.lower() != kind.lower() else kind
-    return [part for part in (named, *line[1:], *_facts(view, detailing, proxy)) if part]
+    many = _def_words(view, detailing, proxy) if proxy.id in _followers(view, detailing).values() else ""
+    return [part for part in (named, *line[1:], *_facts(view, detailing, proxy), many) if part]
 
 
 def _sheet(view: View, draft: _Draft) -> bytes:

@@ -43,6 +43,26 @@ def test_families_without_an_answer(part: str, material: str, category: str, wor
     assert usual(Cell(part, material), described(words), category, object_family, "").family == family
 
 
+@pytest.mark.parametrize(
+    ("part", "material", "category", "words"),
+    [
+        ("voile", "shade #F4F1EA", "curtain", ""),
+        ("panel", "linen #F4F1EA", "sheer_curtain", ""),
+        ("cloth", "linen", "curtain", "white voile"),
+    ],
+)
+def test_sheers_let_light_through_and_give_none(part: str, material: str, category: str, words: str) -> None:
+    cell = Cell(part, material, 1.0)
+    made = usual(cell, described(words), category, "textile", "F4F1EA")
+    assert (made.family, dict(made.options).get("sheer")) == ("linen", "0.5")
+    shining = MaterialsReply.model_validate({"objects": [{"id": "x", "parts": [{"part": "all", "material": "glow"}]}]})
+    assert Answered.of([shining], ["x"]).choice("x", cell, category, made).family == "linen"
+
+
+def test_a_lamps_shade_shines() -> None:
+    assert usual(Cell("shade", "shade #F4F1EA"), described("linen shade"), "floor lamp", "lamp", "").family == "shade"
+
+
 def test_a_mirror_never_gets_what_it_reflects() -> None:
     cell = Cell("plate", "mirror #804020", 0.9)
     made = usual(cell, described("", ("804020", 0.9)), "mirror", "wall", "804020")
