@@ -44,6 +44,8 @@ LYING = 0.02
 
 NARROW, MOST_NARROWED = 0.001, 0.12
 """Metres that are left beside a thing between two boards, and the share of its width by which it is made to fit there."""
+PUSHED, _RIM = 0.03, (-0.47, -0.3, 0.0, 0.3)
+"""Metres by which a pillow that reaches into a board, or with its rim onto it, is pushed off; heights at which that is seen."""
 _SOFT = re.compile(r"\b(pillows?|cushions?|bolsters?)\b", re.IGNORECASE)
 
 
@@ -171,12 +173,17 @@ class Carriers:
         below = self._fine[carrier.id]
         if below is None or proxy.id not in self.shapes:
             return seated
-        proxy = proxy if _is_soft(proxy.category) else self._narrowed(proxy, carrier)
-        seated = replace(seated, proxy=proxy)
+        soft = _is_soft(proxy.category)
+        proxy = self._let_down(proxy if soft else self._narrowed(proxy, carrier), carrier, seated.scale, below)
+        if soft and (pushed := self._pushed(proxy, carrier)) != proxy:
+            proxy = self._let_down(pushed, carrier, seated.scale, below)
+        return replace(seated, proxy=proxy)
+
+    def _let_down(self, proxy: ProxyLine, carrier: ProxyLine, scale: float, below: Samples) -> ProxyLine:
+        """A thing at the height at which its mesh touches the carrier's."""
         place = (*to_local(carrier, proxy.centre[:2]), base_of(proxy) - base_of(carrier))
-        down = drop(self.shapes[proxy.id], seated.scale, below, place, proxy.yaw - carrier.yaw)
-        centre = (*proxy.centre[:2], proxy.centre[2] - down)
-        return replace(seated, proxy=proxy.model_copy(update={"centre": centre}))
+        down = drop(self.shapes[proxy.id], scale, below, place, proxy.yaw - carrier.yaw)
+        return proxy.model_copy(update={"centre": (*proxy.centre[:2], proxy.centre[2] - down)})
 
     def _narrowed(self, proxy: ProxyLine, carrier: ProxyLine) -> ProxyLine:
         """A thing that reaches into what is on both sides of it, between them: rasters are coarser than boards are thin."""
@@ -190,11 +197,28 @@ class Carriers:
             if not (1 - MOST_NARROWED) * size[axis] <= free < size[axis]:
                 continue
             size[axis] = free
-            shift = (after - before) / 2
-            way = math.radians(proxy.yaw) + axis * math.pi / 2
-            centre = proxy.centre[0] + shift * math.cos(way), proxy.centre[1] + shift * math.sin(way), proxy.centre[2]
             width, depth, height = (float(v) for v in size)
-            proxy = proxy.model_copy(update={"size": (width, depth, height), "centre": centre})
+            proxy = _along(proxy.model_copy(update={"size": (width, depth, height)}), axis, (after - before) / 2)
+        return proxy
+
+    def _pushed(self, proxy: ProxyLine, carrier: ProxyLine) -> ProxyLine:
+        """A pillow that reaches into a board at one side of it, beside that board; pressed where there is no room behind it."""
+        turn = math.radians(proxy.yaw - carrier.yaw)
+        for axis in (0, 1):
+            x, y = to_local(carrier, proxy.centre[:2])
+            middle = np.array((x, y, proxy.centre[2] - base_of(carrier)))
+            sides = room_beside(self.shapes.get(carrier.id, ()), middle, np.array(proxy.size), turn, axis, _RIM)
+            half = proxy.size[axis] / 2 + NARROW
+            near, far = sorted(sides)
+            shift = half - near
+            if not 0 < shift <= PUSHED:
+                continue
+            if far < half + shift:
+                size = np.array(proxy.size)
+                size[axis] -= shift
+                width, depth, height = (float(v) for v in size)
+                proxy, shift = proxy.model_copy(update={"size": (width, depth, height)}), shift / 2
+            proxy = _along(proxy, axis, shift if sides[0] < sides[1] else -shift)
         return proxy
 
     def _offers(
@@ -223,6 +247,13 @@ class Carriers:
             + SHRINK_COST * (1 - seat.scale)
         )
         return [(cost, Seated(seated_proxy(lifted, carrier, seat), seat.moved, seat.scale, surface.part))]
+
+
+def _along(proxy: ProxyLine, axis: int, shift: float) -> ProxyLine:
+    """A thing moved by so many metres along its width (axis 0) or its depth (1)."""
+    way = math.radians(proxy.yaw) + axis * math.pi / 2
+    centre = proxy.centre[0] + shift * math.cos(way), proxy.centre[1] + shift * math.sin(way), proxy.centre[2]
+    return proxy.model_copy(update={"centre": centre})
 
 
 def _hangs_over(proxy: ProxyLine, surface: Surface, turn: float) -> bool:

@@ -39,11 +39,19 @@ def hits(corners: Floats, origin: Floats, way: Floats) -> Floats:
     return found
 
 
-def room_beside(shapes: Sequence[Shape], middle: Floats, size: Floats, turn: float, axis: int) -> tuple[float, float]:
+def room_beside(
+    shapes: Sequence[Shape],
+    middle: Floats,
+    size: Floats,
+    turn: float,
+    axis: int,
+    levels: Sequence[float] = (-0.3, 0.0, 0.3),
+) -> tuple[float, float]:
     """How far it is from the middle of a box to what stands beside it, against an axis of the box and along it.
 
     Args:
         middle: of the box; size: width, depth and height of it; turn: its yaw, radians. axis: 0 its width, 1 its depth.
+        levels: heights at which it is asked, from the middle, in shares of the height.
     """
     axes = np.array(((np.cos(turn), np.sin(turn), 0.0), (-np.sin(turn), np.cos(turn), 0.0), (0.0, 0.0, 1.0)))
     corners = faces_of(shapes)
@@ -51,7 +59,7 @@ def room_beside(shapes: Sequence[Shape], middle: Floats, size: Floats, turn: flo
     for side in (-1.0, 1.0):
         nearest = np.inf
         for other in (-0.3, 0.3):
-            for up in (-0.3, 0.0, 0.3):
+            for up in levels:
                 origin = middle + other * size[1 - axis] * axes[1 - axis] + up * size[2] * axes[2]
                 met = hits(corners, origin, side * axes[axis])
                 nearest = min(nearest, float(met[0])) if len(met) else nearest

@@ -64,6 +64,20 @@ def test_a_row_of_books_never_reaches_into_the_sides_of_its_shelf(width: float) 
     assert found.size[0] == pytest.approx(min(width, 0.954), abs=0.003) and found.size[1:] == (0.2, 0.26)
 
 
+@pytest.mark.parametrize("fold", [None, 0.58])
+def test_a_pillow_does_not_lie_with_its_rim_on_a_low_rail(fold: float | None) -> None:
+    bed = ProxyLine(id="bed_1", category="bed", centre=(0, 0, 0.255), size=(1.0, 2.0, 0.51))
+    parts = [box((1.0, 1.9, 0.48), at=(0, 0, 0.24)), box((1.0, 0.1, 0.51), at=(0, 0.95, 0.255))]
+    if fold is not None:  # something thick before it
+        parts.append(box((1.0, 0.1, 0.12), at=(0, fold - 0.05, 0.54)))
+    item = DetectedObject(id="pillow_1", category="pillow", placement="surface", parent="bed_1",
+                          size=(0.6, 0.32, 0.12), centre=(0, 0.76, 0.54), box=None)  # fmt: skip
+    found = seat(item, [sphere((0.3, 0.16, 0.06), at=(0, 0, 0.06))], bed, parts)
+    assert found.centre[1] + found.size[1] / 2 <= 0.9
+    assert found.centre[2] - found.size[2] / 2 == pytest.approx(0.48, abs=0.004)
+    assert (found.size[1] < 0.32) == (fold is not None) and found.size[1] > 0.28
+
+
 def test_a_cushion_on_a_narrow_seat_is_seated_and_not_spread_over_it() -> None:
     chair = ProxyLine(id="armchair_1", category="armchair", centre=(0, 0, 0.22), size=(0.5, 0.45, 0.44))
     cushion = ProxyLine(id="cushion_1", category="cushion", centre=(0, 0, 0.6), size=(0.52, 0.2, 0.3),
