@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..light.tone import luminance, scene_light, shown
 
@@ -51,9 +52,10 @@ def brighten_outside(stage: Any, exposure: float) -> Any | None:
     return world
 
 
-def _shade(world: Any, heights: list[float], colours: np.ndarray) -> None:
+def _shade(world: Any, heights: list[float], colours: NDArray[np.float64]) -> None:
     """Let what a camera sees go from colour to colour with the height of what it looks at."""
     tree, seen = world.node_tree, _seen(world)
+    assert seen is not None
     place, parts, height, ramp = (
         tree.nodes.new(f"ShaderNode{kind}") for kind in ("TexCoord", "SeparateXYZ", "MapRange", "ValToRGB")
     )

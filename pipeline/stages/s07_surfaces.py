@@ -27,7 +27,8 @@ from ..program.limits import FINISHED_ROOM_LIMITS
 from ..program.lines import parse_layout
 from ..program.prelude.proxies import proxy_shapes
 from ..program.prelude.shape import Shape
-from ..surfaces.choose import Carriers, Seated, base_of, carriers_under
+from ..surfaces.choose import Carriers, Seated, carriers_under
+from ..surfaces.frame import base_of
 from ..surfaces.hang import is_hung, under_rail
 from .base import Reads, Stage, View
 from .carrying import carried_on

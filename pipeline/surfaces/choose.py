@@ -21,6 +21,7 @@ from ..objects.cloths import is_lying_cloth
 from ..program.prelude.shape import Shape
 from .cover import below, carried, lain
 from .find import Surface, support_surfaces
+from .frame import base_of, moved_along, to_local, to_room
 from .rasters import Samples, sample
 from .rays import room_beside
 from .seat import CLOSE, ROUND, Seat, find_seat, occupied
@@ -198,7 +199,7 @@ class Carriers:
                 continue
             size[axis] = free
             width, depth, height = (float(v) for v in size)
-            proxy = _along(proxy.model_copy(update={"size": (width, depth, height)}), axis, (after - before) / 2)
+            proxy = moved_along(proxy.model_copy(update={"size": (width, depth, height)}), axis, (after - before) / 2)
         return proxy
 
     def _pushed(self, proxy: ProxyLine, carrier: ProxyLine) -> ProxyLine:
@@ -218,7 +219,7 @@ class Carriers:
                 size[axis] -= shift
                 width, depth, height = (float(v) for v in size)
                 proxy, shift = proxy.model_copy(update={"size": (width, depth, height)}), shift / 2
-            proxy = _along(proxy, axis, shift if sides[0] < sides[1] else -shift)
+            proxy = moved_along(proxy, axis, shift if sides[0] < sides[1] else -shift)
         return proxy
 
     def _offers(
@@ -249,13 +250,6 @@ class Carriers:
         return [(cost, Seated(seated_proxy(lifted, carrier, seat), seat.moved, seat.scale, surface.part))]
 
 
-def _along(proxy: ProxyLine, axis: int, shift: float) -> ProxyLine:
-    """A thing moved by so many metres along its width (axis 0) or its depth (1)."""
-    way = math.radians(proxy.yaw) + axis * math.pi / 2
-    centre = proxy.centre[0] + shift * math.cos(way), proxy.centre[1] + shift * math.sin(way), proxy.centre[2]
-    return proxy.model_copy(update={"centre": centre})
-
-
 def _hangs_over(proxy: ProxyLine, surface: Surface, turn: float) -> bool:
     """Whether a thing is longer or wider than a surface, so that it must hang down over its edges."""
     cells = np.isfinite(surface.heights)
@@ -268,25 +262,6 @@ def _hangs_over(proxy: ProxyLine, surface: Surface, turn: float) -> bool:
 def _is_soft(category: str) -> bool:
     """Whether a thing gives way to others of its kind: cushions and pillows are piled where they are wanted."""
     return bool(_SOFT.search(category.replace("_", " ")))
-
-
-def base_of(proxy: ProxyLine) -> float:
-    """Height of a proxy's underside."""
-    return proxy.centre[2] - proxy.size[2] / 2
-
-
-def to_local(carrier: ProxyLine, point: Sequence[float]) -> tuple[float, float]:
-    """A point of the room in the frame of a thing (origin at the middle of its base)."""
-    angle = math.radians(-carrier.yaw)
-    dx, dy = point[0] - carrier.centre[0], point[1] - carrier.centre[1]
-    return dx * math.cos(angle) - dy * math.sin(angle), dx * math.sin(angle) + dy * math.cos(angle)
-
-
-def to_room(carrier: ProxyLine, point: Sequence[float]) -> tuple[float, float]:
-    """The inverse of `to_local`."""
-    angle = math.radians(carrier.yaw)
-    x = carrier.centre[0] + point[0] * math.cos(angle) - point[1] * math.sin(angle)
-    return x, carrier.centre[1] + point[0] * math.sin(angle) + point[1] * math.cos(angle)
 
 
 def seated_proxy(lifted: ProxyLine, carrier: ProxyLine, seat: Seat) -> ProxyLine:

@@ -12,8 +12,9 @@ import numpy as np
 from ..artifacts.layout import ProxyLine
 from ..geometry.polygon import Floats
 from ..program.prelude.shape import Shape
-from .choose import Carriers, base_of, to_local, to_room
+from .choose import Carriers
 from .find import Surface
+from .frame import base_of, to_local, to_room
 from .rays import faces_of, hits
 
 _CLOTHES = re.compile(
