@@ -294,6 +294,42 @@ def test_a_room_of_forty_objects_asks_within_the_budget(run: Run, answers: Any) 
     assert sum(r.prompt_bytes for r in mine) <= 230_000
 
 
+def test_rows_of_books_are_written_once_and_none_is_like_another(run: Run, answers: Any) -> None:
+    first = answers.by_key["01_analysis"]
+    rows = []
+    for n in range(3):
+        base = json.loads(json.dumps(first["objects"][0]))
+        rows.append({**base, "id": f"row_{n}", "category": "books", "parent": None, "base_m": 0, "placement": "floor",
+                     "centre_m": {"x_m": -1.5 + n, "y_m": -1.5}, "salience": "minor",
+                     "size_m": {"width": 0.8, "depth": 0.2, "height": 0.25}})  # fmt: skip
+    row = """def {name}(size, seed=1):
+    w, d, h = size
+    low = rand((seed, 1), 0.6, 0.9)
+    return [part("tall", box((w / 2, d, h), at=(-w / 4, 0, h / 2)), material="paper"),
+            part("low", box((w / 2, d, low * h), at=(w / 4, 0, low * h / 2)), material="paper")]
+"""
+
+    def written(prompt: Prompt) -> dict[str, Any]:
+        found = programs(prompt)
+        asked = re.findall(
+            r"^\d+, (row_\d),.*it makes 3 such rows, so def (\w+)\(size, seed=1\)", prompt.text, re.MULTILINE
+        )
+        found["objects"] += [{"id": i, "program": row.format(name=name), "keep": False} for i, name in asked]
+        return found
+
+    answers.by_key |= {"01_analysis": {**first, "objects": [*first["objects"], *rows]}, "06_programs": written}
+    run.memory.settings["objects"] = "programs"
+    run.run_all(STAGES)
+    listed = [re.findall(r"^\d+, (row_\d),", p.text, re.MULTILINE) for p in answers.asked if p.key.startswith("06_pro")]
+    assert sum(len(ids) for ids in listed) == 1
+    geometry, made = run.memory.latest(Geometry), furnished(run)
+    assert geometry is not None
+    assert {o.source for o in geometry.objects if o.id.startswith("row_")} == {"program"}
+    assert len({round(float(made[f"row_{n}"][1].vertices[:, 2].max()), 4) for n in range(3)}) == 3
+    text = run.memory.latest(LayoutProgram).text  # type: ignore[union-attr]
+    assert text.count("low = rand(") == 1
+
+
 @pytest.mark.parametrize(
     ("client", "way"),
     [
