@@ -24,6 +24,8 @@ FIXED = frozenset({
 })  # fmt: skip
 """Roles that look the same on everything; the picture's reflections in them say little."""
 _CELLS = 72
+_LARGE = 0.005
+"""Share of an object seen from above from which a bent face is looked at closely."""
 _SURE = 0.18
 """An object of which less is seen keeps its usual colours."""
 
@@ -62,6 +64,7 @@ def _top_samples(shapes: Sequence[Shape]) -> tuple[Any, Any]:
     shape_of = np.repeat(np.arange(len(meshes)), [len(fan) for fan in fans])
     a, b, c = (points[corners[:, k]].T for k in range(3))
     up = 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
+    face = np.cumsum(np.concatenate([_first_of_face(shape) for shape in meshes])) - 1
     seen = np.flatnonzero(up > 0)
     count = np.clip(np.ceil(2.0 * up[seen] / cell), 1, 4000).astype(int)
     shape_of = np.repeat(shape_of[seen], count)
@@ -72,7 +75,44 @@ def _top_samples(shapes: Sequence[Shape]) -> tuple[Any, Any]:
         np.repeat(p, count) + u * np.repeat(q - p, count) + v * np.repeat(r - p, count)
         for p, q, r in zip(a[:, seen], b[:, seen], c[:, seen], strict=True)
     ]
-    return np.stack(found), np.repeat(whose[seen], count)
+    places, owners = np.stack(found), np.repeat(whose[seen], count)
+    kept = _inside(places[:2], np.repeat(face[seen], count), face, up, (a[:2], b[:2], c[:2]), _LARGE * cell * _CELLS**2)
+    return places[:, kept], owners[kept]
+
+
+def _first_of_face(shape: Shape) -> Any:
+    """Which triangles of `_fan` are the first of their face."""
+    _, lengths = shape.corners
+    count = np.maximum(lengths - 2, 0)
+    found = np.zeros(int(count.sum()), dtype=int)
+    found[(np.cumsum(count) - count)[count > 0]] = 1
+    return found
+
+
+def _inside(places: Any, own: Any, face: Any, up: Any, corners: Any, large: float) -> Any:
+    """Which points (2, N) are in their face itself: triangles round a first corner cover the hole of a ring as well.
+
+    Args:
+        own: the face of each point; face, up: the face of each triangle, and its area seen from above, below zero turned over.
+        large: the area from which faces are looked at; of small ones nothing is seen.
+    """
+    kept = np.ones(places.shape[1], dtype=bool)
+    area = np.bincount(face, weights=up)
+    over = np.bincount(face, weights=np.minimum(up, 0.0))
+    for number in np.flatnonzero((area > large) & (over < -1e-9)):
+        mine, of = np.flatnonzero(own == number), np.flatnonzero(face == number)
+        cover = np.zeros(len(mine))
+        for k in of:
+            p, q, r = (corner[:, k, None] for corner in corners)
+            sides = [_cross(e - s, places[:, mine] - s) for s, e in ((p, q), (q, r), (r, p))]
+            way = np.sign(up[k])
+            cover += way * (np.min(way * np.array(sides), axis=0) >= 0)
+        kept[mine] = cover > 0
+    return kept
+
+
+def _cross(a: Any, b: Any) -> Any:
+    return a[0] * b[1] - a[1] * b[0]
 
 
 @functools.lru_cache(maxsize=4)

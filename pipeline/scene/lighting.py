@@ -10,6 +10,7 @@ has changed; what the artist changed since stays. When the line goes, what stood
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from typing import Any
 
 import bpy
@@ -18,7 +19,7 @@ from ..program.prelude.enclosure import CEILING, SECTION, TOPS
 from ..program.prelude.kelvin import light_colour
 from ..program.prelude.record import Record
 from .nodes import ensure_node_tree
-from .tags import FIELD, KIND, LINE
+from .tags import FIELD, ID, KIND, LINE
 
 WORLD_LINE = FIELD + "world_line"  # on our world, and on the room: the line that was written last
 WORLD_BEFORE = FIELD + "world_before"  # on the room: the world that the scene had before ours
@@ -28,6 +29,7 @@ _ONE_SIDED = "Code-as-Room One-Sided"
 _FLAT = "Code-as-Room Flat"
 _SECTION_TONE = (0.62, 0.60, 0.58)  # linear light; a light grey, as cut walls are drawn
 _NEAREST_TRANSFORMS = ("AgX", "Filmic", "Standard")
+_TAKES_GLOSS_AWAY = "Khronos PBR Neutral"
 
 
 def light_scene(scene: Any, room: Any, record: Record) -> None:
@@ -35,7 +37,11 @@ def light_scene(scene: Any, room: Any, record: Record) -> None:
     _apply_world(scene, room, record.worlds[0] if record.worlds else None)
     _apply_view(scene, room, record.views[0] if record.views else None)
     exposure = record.views[0]["exposure"] if record.views else 0.0
+    neutral = not record.views or record.views[0]["transform"] == _TAKES_GLOSS_AWAY
+    panels = {line["id"] for line in record.lights if _stands_for_ceiling(line)}
     for obj in list(room.all_objects):  # hiding from the mouse rebuilds what is iterated over
+        if obj.type == "LIGHT" and obj.get(ID) in panels and obj.data.type == "AREA" and hasattr(obj, "visible_glossy"):
+            obj.visible_glossy = neutral
         if obj.get(KIND) in (CEILING, SECTION, TOPS) and LINE in obj:
             _dress(obj, exposure)
 
@@ -46,12 +52,16 @@ def light_scene(scene: Any, room: Any, record: Record) -> None:
 def dress_light(obj: Any, line: dict[str, Any]) -> None:
     """A light is made to shine, not to be seen: cameras see the window and the lamp that it stands for.
 
-    What a bright ceiling gives back is seen in gloss: without it, wood and cloth would be darker than they are.
+    What a bright ceiling gives back is seen in gloss where the view transform takes a surface's gloss away again: without it,
+    wood and cloth would be darker than they are. Through others, what is dark would be grey with it (`light_scene`).
     """
     obj.visible_camera = False
-    stands_for_ceiling = line.get("target") is None and not line.get("parent")
-    if obj.data.type == "AREA" and hasattr(obj, "visible_glossy") and not stands_for_ceiling:
+    if obj.data.type == "AREA" and hasattr(obj, "visible_glossy") and not _stands_for_ceiling(line):
         obj.visible_glossy = False  # mirrors and floors would show its frameless rectangle
+
+
+def _stands_for_ceiling(line: Mapping[str, Any]) -> bool:
+    return line.get("target") is None and not line.get("parent")
 
 
 def _dress(obj: Any, exposure: float) -> None:

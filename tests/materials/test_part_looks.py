@@ -11,10 +11,11 @@ from code_as_room.pipeline.materials.answered import Answered
 from code_as_room.pipeline.materials.choice import Choice, look_of
 from code_as_room.pipeline.materials.colours import part_colours
 from code_as_room.pipeline.materials.difference import difference, lab_of
-from code_as_room.pipeline.materials.parts import Cell
+from code_as_room.pipeline.materials.parts import Cell, cells_of
 from code_as_room.pipeline.materials.sharing import finish_of, merged, named
 from code_as_room.pipeline.materials.shell import ShellColours, _walls
 from code_as_room.pipeline.materials.usual import usual
+from code_as_room.pipeline.program.evaluate import evaluate_object
 
 
 def described(material: str = "", *colours: tuple[str, float], seen: float = 1.0) -> ObjectDescription:
@@ -61,6 +62,19 @@ def test_sheers_let_light_through_and_give_none(part: str, material: str, catego
 
 def test_a_lamps_shade_shines() -> None:
     assert usual(Cell("shade", "shade #F4F1EA"), described("linen shade"), "floor lamp", "lamp", "").family == "shade"
+
+
+def test_a_border_counts_without_what_it_goes_round() -> None:
+    """A rug's band is a ring: its middle is the field's."""
+    made = evaluate_object(
+        "def rug_1(size):\n    w, d, h = size\n"
+        "    ring = extrude(rectangle(w, d), h, holes=(rectangle(w - 0.2, d - 0.2),))\n"
+        "    field = box((w - 0.2, d - 0.2, h / 2), at=(0, 0, h / 4))\n"
+        "    return [part('field', field, material='fabric'), part('band', ring, material='accent')]\n",
+        "rug_1", args=((2.0, 1.0, 0.01),),
+    )  # fmt: skip
+    share = {cell.part: cell.share for cell in cells_of(made)}
+    assert share["band"] == pytest.approx(0.28, abs=0.06) and share["field"] == pytest.approx(0.72, abs=0.06)
 
 
 def test_a_mirror_never_gets_what_it_reflects() -> None:

@@ -61,6 +61,19 @@ def test_lights_shine_as_their_lines_say_and_are_not_seen(built: Any) -> None:
     assert window.parent == obj("window_1") and lamp.parent == obj("lamp_1")
 
 
+@pytest.mark.parametrize(("transform", "seen"), [("AgX", False), ("Khronos PBR Neutral", True)])
+def test_a_bright_ceiling_is_seen_in_gloss_where_gloss_is_taken_away_again(transform: str, seen: bool) -> None:
+    """Through AgX dark leather under it would be grey."""
+    panel = 'light("ceiling_light", "area", at=(0, 0, 2.4), energy=40, size=3, size_y=2)\nbuild()'
+    text = ROOM.replace("build()", panel).replace('"AgX", look="AgX - Medium High Contrast"', f'"{transform}"')
+    backend = BlenderScene(bpy.context.scene)
+    for before in (text.replace(transform, "Standard"), text):
+        backend.build(before)
+    assert obj("ceiling_light").visible_glossy == seen
+    assert not obj("window_1_light").visible_glossy and obj("lamp_1_light").visible_glossy
+    assert backend.read_back() == []
+
+
 def test_sky_and_exposure_are_set_and_nothing_reads_as_edited(built: Any) -> None:
     scene = bpy.context.scene
     assert scene.view_settings.exposure == pytest.approx(0.75)
