@@ -10,7 +10,6 @@ has changed; what the artist changed since stays. When the line goes, what stood
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
 from typing import Any
 
 import bpy
@@ -29,19 +28,24 @@ _ONE_SIDED = "Code-as-Room One-Sided"
 _FLAT = "Code-as-Room Flat"
 _SECTION_TONE = (0.62, 0.60, 0.58)  # linear light; a light grey, as cut walls are drawn
 _NEAREST_TRANSFORMS = ("AgX", "Filmic", "Standard")
-_TAKES_GLOSS_AWAY = "Khronos PBR Neutral"
 
 
 def light_scene(scene: Any, room: Any, record: Record) -> None:
-    """Give a scene the world and the view of a record, and its lights and its ceiling what only objects can say."""
+    """Give a scene the world and the view of a record, and its lights and its ceiling what only objects can say.
+
+    Mirrors and floors would show the frameless rectangles of area lights. What a bright ceiling gives back is seen in gloss where
+    the view transform takes a surface's gloss away again: without it, wood and cloth would be darker than they are. Through
+    others, what is dark would be grey with it.
+    """
     _apply_world(scene, room, record.worlds[0] if record.worlds else None)
     _apply_view(scene, room, record.views[0] if record.views else None)
     exposure = record.views[0]["exposure"] if record.views else 0.0
-    neutral = not record.views or record.views[0]["transform"] == _TAKES_GLOSS_AWAY
-    panels = {line["id"] for line in record.lights if _stands_for_ceiling(line)}
+    neutral = not record.views or record.views[0]["transform"] == "Khronos PBR Neutral"
+    areas = [li for li in record.lights if li["kind"] == "area"]
+    glossy = {li["id"]: neutral and not (li.get("target") or li.get("parent")) for li in areas}
     for obj in list(room.all_objects):  # hiding from the mouse rebuilds what is iterated over
-        if obj.type == "LIGHT" and obj.get(ID) in panels and obj.data.type == "AREA" and hasattr(obj, "visible_glossy"):
-            obj.visible_glossy = neutral
+        if obj.get(ID) in glossy:
+            obj.visible_glossy = glossy[obj[ID]]
         if obj.get(KIND) in (CEILING, SECTION, TOPS) and LINE in obj:
             _dress(obj, exposure)
 
@@ -49,19 +53,9 @@ def light_scene(scene: Any, room: Any, record: Record) -> None:
 # ---- objects ----
 
 
-def dress_light(obj: Any, line: dict[str, Any]) -> None:
-    """A light is made to shine, not to be seen: cameras see the window and the lamp that it stands for.
-
-    What a bright ceiling gives back is seen in gloss where the view transform takes a surface's gloss away again: without it,
-    wood and cloth would be darker than they are. Through others, what is dark would be grey with it (`light_scene`).
-    """
+def dress_light(obj: Any) -> None:
+    """A light is made to shine, not to be seen: cameras see the window and the lamp that it stands for."""
     obj.visible_camera = False
-    if obj.data.type == "AREA" and hasattr(obj, "visible_glossy") and not _stands_for_ceiling(line):
-        obj.visible_glossy = False  # mirrors and floors would show its frameless rectangle
-
-
-def _stands_for_ceiling(line: Mapping[str, Any]) -> bool:
-    return line.get("target") is None and not line.get("parent")
 
 
 def _dress(obj: Any, exposure: float) -> None:

@@ -201,7 +201,7 @@ def new_object(target: Target, collection: Any, mesh: Any) -> Any:
         obj[PART] = target.key[1]
     obj[NAME] = obj.name
     if target.kind == "light":
-        dress_light(obj, target.line)
+        dress_light(obj)
     collection.objects.link(obj)
     return obj
 
