@@ -13,7 +13,6 @@ from ..artifacts.common import ImageBox
 from ..library import catalogue
 from ..picture import ReferencePicture
 from ..program.looks_reference import looks_reference
-from ..program.reference import EXAMPLE as LANGUAGE_EXAMPLE
 from ..program.reference import reference
 
 if TYPE_CHECKING:
@@ -113,7 +112,7 @@ def values(picture: ReferencePicture, settings: Mapping[str, str], width_m: floa
 @functools.lru_cache(maxsize=1)
 def language() -> str:
     """The reference of the modelling language without its example: the draft's own one shows more."""
-    return reference().replace(f"## Example\n{LANGUAGE_EXAMPLE}", "").rstrip() + "\n"
+    return reference(example=False).rstrip() + "\n"
 
 
 @functools.lru_cache(maxsize=1)

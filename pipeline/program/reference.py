@@ -60,14 +60,18 @@ def armchair_1(size=(0.8, 0.78, 0.85)):
 """Ends the reference; a test evaluates it."""
 
 
-@functools.lru_cache(maxsize=1)
-def reference() -> str:
-    """What a model has to know of the language to model an object: rules, every constructor, an example; at most 8 kB."""
+@functools.lru_cache(maxsize=2)
+def reference(example: bool = True) -> str:
+    """What a model has to know of the language to model an object: rules, every constructor, an example; at most 8 kB.
+
+    Args:
+        example: whether it ends with one; who mends a program has that.
+    """
     parts = [_introduction()]
     for title, names in _SECTIONS:
         shown = names or _operations()
         parts.append(f"## {title}\n" + "\n".join(entry(name, registry.CONSTRUCTORS[name]) for name in shown) + "\n")
-    return "".join([*parts, "## Example\n", EXAMPLE])
+    return "".join([*parts, "## Example\n", EXAMPLE] if example else parts)
 
 
 def _introduction() -> str:

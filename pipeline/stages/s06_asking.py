@@ -4,36 +4,32 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 from ..artifacts.analysis import Calibration, SceneAnalysis
 from ..artifacts.layout import ProxyLine
-from ..artifacts.objects import PiecesReply, ProgramReply, ProgramsReply
+from ..artifacts.objects import PiecesReply, ProgramsReply
 from ..draft.kept import DRAFTED, LOOKED
-from ..errors import ProgramError
 from ..library import catalogue
 from ..objects.asking import apart_from, batches, crop_of, facing_words, object_line, picture_box
-from ..objects.checks import check
 from ..objects.choose import candidates
 from ..objects.cloths import is_lying_cloth
 from ..objects.crops import TILE, sheet, side_by_side
 from ..objects.detailing import Detailing
 from ..objects.examples import nearest_programs
 from ..objects.eyes import eyes_on
-from ..objects.mending import mended
 from ..objects.rows import another, rows
-from ..objects.written import FAR, STRETCH, Written, take_program
+from ..objects.written import FAR, STRETCH
 from ..program.prelude.palette import category_family
 from ..program.reference import reference
 from .base import View
+from .s06_written import OnItsWay
 from .wishes import Ask, Picture, Portrait, Request, Tell, Wish
 
 BATCH = 5
 MOST_PROGRAMS = 25
 """Objects that get programs of their own; the smallest of more have library pieces."""
 _CANDIDATES = 3
-_BETTER = 0.02
 Asking = Generator[Wish, Any, None]
 
 
@@ -109,7 +105,7 @@ def write_programs(view: View, detailing: Detailing) -> Asking:
             p.id: "No program was written for it; the library's piece stands for it." for p in chosen[:1]
         }
         return
-    drafts = {p.id: _Draft(p, replies.get(p.id)) for p in chosen}
+    drafts = {p.id: OnItsWay(p, replies.get(p.id)) for p in chosen}
     for draft in drafts.values():
         draft.take(detailing, FAR if drafted or looked else STRETCH)
     if drafted:
@@ -159,86 +155,6 @@ def _weight(proxy: ProxyLine) -> float:
     return (w * d + w * h + d * h) * (2.0 if proxy.salience == "major" else 1.0)
 
 
-class _Draft:
-    """One object's program on its way.
-
-    Attributes:
-        made: the best version that can be used so far; problem: why the last one could not be.
-    """
-
-    def __init__(self, proxy: ProxyLine, reply: ProgramReply | None) -> None:
-        self.proxy = proxy
-        self.source = reply.program.strip() if reply is not None else ""
-        self.made: Written | None = None
-        self.problem = ""
-        self.render = b""
-
-    @property
-    def written_by_model(self) -> bool:
-        """Whether there is anything to mend."""
-        return bool(self.source)
-
-    def take(self, detailing: Detailing, stretch: float = STRETCH) -> None:
-        """Evaluate and check what was written."""
-        if self.source:
-            self.made, self.problem, self.source = self._evaluated(detailing, self.source, stretch)
-
-    def mend(self, detailing: Detailing, reply: ProgramReply | None) -> None:
-        """Take a correction where it is better by the checks, or as good: it was written after a look."""
-        if reply is None or reply.keep or not reply.program.strip():
-            return
-        made, problem, _ = self._evaluated(detailing, reply.program)
-        if made is None:
-            self.problem = self.problem or problem
-        elif self.made is None or made.checked.penalty <= self.made.checked.penalty + _BETTER:
-            self.made, self.problem = made, ""
-
-    def keep(self, detailing: Detailing) -> None:
-        """Hand over what can be used; the library's piece stays where nothing can."""
-        identifier = self.proxy.id
-        if self.made is not None and self.made.checked.penalty < 1.0:
-            detailing.written[identifier] = self.made
-            return
-        worst = self.problem or (self.made.checked.findings[0] if self.made is not None else "none was written")
-        detailing.notes[identifier] = (
-            f"Its program could not be used ({worst[:160].rstrip('.')}); a library piece is there."
-        )
-
-    def keep_drafted(self, detailing: Detailing) -> None:
-        """Hand over what a draft has, unless it is of no use even when it is fitted into its box."""
-        made = self.made
-        if made is not None and made.checked.penalty >= 1.0:
-            fitted = check(made.shapes, self.proxy.size, self.proxy.placement)
-            self.made = replace(made, checked=fitted)
-        self.keep(detailing)
-
-    def _evaluated(
-        self, detailing: Detailing, source: str, stretch: float = STRETCH
-    ) -> tuple[Written | None, str, str]:
-        """What the program makes, or why it cannot be used; and the program itself, rewritten where it had to be."""
-        name = detailing.names[self.proxy.id]
-        taken = {*detailing.standing.defs, *(n for i, n in detailing.names.items() if i != self.proxy.id)}
-        try:
-            return take_program(source, self.proxy, name, taken, stretch), "", source
-        except ProgramError as error:
-            problem = str(error)
-        try:
-            rewritten = mended(source)
-            if rewritten is None:
-                return None, problem, source
-            source = rewritten
-            return take_program(source, self.proxy, name, taken, stretch), "", source
-        except ProgramError as error:
-            return None, str(error), source
-
-    def told(self, facts: Sequence[str]) -> str:
-        """The program, what it is to look like, and what is wrong with it, for the second round."""
-        checked = self.made.checked.findings if self.made is not None else (self.problem,)
-        wrong = "\n".join(f"- {sentence}" for sentence in checked if sentence) or "- nothing was measured to be wrong"
-        box = f"{self.proxy.id}, box {' x '.join(f'{v:.2f}' for v in self.proxy.size)}"
-        return f"{'; '.join((box, *facts))}\n{wrong}\n```\n{self.source}\n```"
-
-
 def _first_request(view: View, detailing: Detailing, number: int, batch: Sequence[ProxyLine]) -> Request:
     analysis, calibration = view.need(SceneAnalysis), view.need(Calibration)
     boxes = {p.id: picture_box(p, calibration.camera, analysis) for p in batch}
@@ -269,7 +185,7 @@ def _def_words(view: View, detailing: Detailing, proxy: ProxyLine) -> str:
     return f"it makes {more + 1} such rows, so def {name}(size, seed=1), and all that varies by rand((seed, ...))"
 
 
-def _second_request(view: View, detailing: Detailing, number: int, batch: Sequence[_Draft]) -> Request:
+def _second_request(view: View, detailing: Detailing, number: int, batch: Sequence[OnItsWay]) -> Request:
     sheets = [(draft, _sheet(view, draft)) for draft in batch]
     shown = [Picture(draft.proxy.id, data) for draft, data in sheets if data]
     order = [picture.name for picture in shown]
@@ -278,7 +194,7 @@ def _second_request(view: View, detailing: Detailing, number: int, batch: Sequen
         prompt="06_correct",
         reply=ProgramsReply,
         values={
-            "reference": reference(),
+            "reference": reference(example=False),
             "pictures": "; ".join(f"{n} {what}" for n, what in enumerate(order, 1)) or "none",
             "style": detailing.style.style or "not known",
             "objects": "\n\n".join(draft.told(_what(view, detailing, draft.proxy)) for draft in batch),
@@ -297,7 +213,7 @@ def _what(view: View, detailing: Detailing, proxy: ProxyLine) -> list[str]:
     return [part for part in (named, *line[1:], *_facts(view, detailing, proxy), many) if part]
 
 
-def _sheet(view: View, draft: _Draft) -> bytes:
+def _sheet(view: View, draft: OnItsWay) -> bytes:
     """An object in the picture, and as its program makes it; without what there is no picture of."""
     analysis, calibration = view.need(SceneAnalysis), view.need(Calibration)
     box = picture_box(draft.proxy, calibration.camera, analysis)

@@ -30,7 +30,7 @@ from code_as_room.pipeline.program.lines import parse_layout
 from code_as_room.pipeline.prompting import make_prompt
 from code_as_room.pipeline.run import Run
 from code_as_room.pipeline.run_refining import refine
-from code_as_room.pipeline.stages import all_stages, s00_draft, s06_asking
+from code_as_room.pipeline.stages import all_stages, s00_draft, s06_written
 from code_as_room.pipeline.stages.base import View
 from PIL import Image, ImageDraw
 
@@ -268,7 +268,7 @@ def test_a_look_that_helps_nothing_leaves_what_was_drafted(
     before = {o.id: (o.source, o.function) for o in run.memory.latest(Geometry).objects}
     # Whatever keeps a drafted program from being taken once more: it must not cost the object that stands.
     monkeypatch.setattr(
-        s06_asking._Draft, "_evaluated", lambda self, detailing, source, stretch=0.0: (None, "no", source)
+        s06_written.OnItsWay, "_evaluated", lambda self, detailing, source, stretch=0.0: (None, "no", source)
     )
     refine(run, model)
     assert "06_correct/1" in model.asked
