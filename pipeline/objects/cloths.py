@@ -14,8 +14,9 @@ _CLOTHS = frozenset({
 })  # fmt: skip
 _BUNDLED = frozenset({"rolled", "stack", "stacked", "pile", "basket", "pillow", "pillows", "cushion", "box"})
 """What is said of cloths that do not lie spread out, and of things that only are called after cloths."""
-_FOLDED = 0.15
-"""Metres up to which what is folded is a stack; what is higher is folded once or twice and hangs over an edge."""
+_FOLDED, _STACK = 0.15, 0.7
+"""Metres up to which what is folded is a stack, and square metres of its outline; what is higher is folded once or twice and hangs
+over an edge, and of what is larger only an edge is folded."""
 MOST_HEIGHT = 1.0
 """Of its shorter side; what is higher is a heap, or hangs from something."""
 
@@ -26,9 +27,14 @@ def is_lying_cloth(proxy: ProxyLine) -> bool:
         return False
     words = set(re.findall(r"[a-z]+", f"{proxy.category} {proxy.label}".lower()))
     kind = re.findall(r"[a-z]+", proxy.category.lower())
-    if not _CLOTHS.intersection(kind) or words & _BUNDLED or ("folded" in words and proxy.size[2] <= _FOLDED):
+    if not _CLOTHS.intersection(kind) or words & _BUNDLED or _is_stack(proxy, words):
         return False
     return proxy.size[2] <= MOST_HEIGHT * min(proxy.size[:2])
+
+
+def _is_stack(proxy: ProxyLine, words: set[str]) -> bool:
+    width, depth, height = proxy.size
+    return "folded" in words and height <= _FOLDED and width * depth <= _STACK
 
 
 def furnish_line(proxy: ProxyLine, function: str) -> str:

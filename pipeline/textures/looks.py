@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from ..artifacts.textures import Texture, Textures
+from ..materials.difference import difference
 from ..materials.parts import cells_of
 from ..program import finishes
 from ..program.lines import quoted
@@ -18,6 +19,8 @@ from .names import shows_image_of
 ROUGHNESS = {"floor": 0.5, "wall": 0.8, "rug": 0.95, "cloth": 0.95, "picture": 0.7, "screen": 0.25}
 _KEPT = ("roughness", "specular", "coat", "sheen")
 """Numbers of the look before that a texture keeps: only colours come from the image."""
+_FAINT = 9.0
+"""CIEDE2000 up to which a pattern that was modelled is the one that the image shows."""
 _RELIEF = {"rug": "bump(noise_map(0.008), 0.003)", "cloth": "bump(noise_map(0.004), 0.001)"}
 """Pile and weave, which no image of a room from above shows."""
 
@@ -76,9 +79,10 @@ def finished_text(text: str, textures: Textures, record: Record) -> str:
         old = [key for key, look in finish.items() if shows_image_of(texture.surface, look)]
         finish = {key: look for key, look in finish.items() if key not in old}
         if texture.name:
-            key = _key(texture, record.furnished.get(texture.surface, ()))
-            before = record.finishes.get(texture.surface, {})
-            finish |= {key: look_text(texture, _look_before(key, before))}
+            shapes = record.furnished.get(texture.surface, ())
+            key = _key(texture, shapes)
+            look = look_text(texture, _look_before(key, record.finishes.get(texture.surface, {})))
+            finish |= dict.fromkeys([key, *_like(key, texture, shapes)], look)
         if finish:
             found.finishes[texture.surface] = finish
         else:
@@ -99,6 +103,15 @@ def _key(texture: Texture, shapes: Sequence[Shape]) -> str:
         return texture.part
     widest = max(cells_of(shapes, texture.kind in ("picture", "screen")), key=lambda cell: cell.share)
     return widest.part or widest.role
+
+
+def _like(key: str, texture: Texture, shapes: Sequence[Shape]) -> list[str]:
+    """Other parts of a rug in nearly the same colour: streaks that somebody modelled, which the image has already."""
+    if texture.kind != "rug":
+        return []
+    cells = [cell for cell in cells_of(shapes) if cell.part and cell.code]
+    own = next((cell.code for cell in cells if cell.part == key), "")
+    return [cell.part for cell in cells if own and cell.part != key and difference(cell.code, own) < _FAINT]
 
 
 def _look_before(key: str, finish: Mapping[str, Look]) -> Look | None:

@@ -14,6 +14,7 @@ from code_as_room.pipeline.objects.cloths import is_lying_cloth
         ("throw", (1.4, 0.5, 0.4), True),
         ("folded throw on the bench", (0.32, 0.45, 0.285), True),  # too high for a stack: it hangs over the edge
         ("folded throw", (0.4, 0.3, 0.09), False),
+        ("duvet, upper edge folded over", (2.05, 1.53, 0.13), True),
         ("stack of blankets", (0.5, 0.4, 0.4), False),
         ("throw pillow", (0.5, 0.5, 0.2), False),
         ("blanket", (0.3, 0.3, 0.9), False),  # it hangs from something

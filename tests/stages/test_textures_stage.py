@@ -142,6 +142,29 @@ build()
     assert again.finishes["rug_1"] == {"fringe": 'linen("#EEEEEE")'}
 
 
+def test_a_rugs_faint_streaks_show_the_image_and_its_dark_band_stays() -> None:
+    text = (
+        "room(size=(4, 4, 2.5), floor=[(-2, -2), (2, -2), (2, 2), (-2, 2)])\n"
+        'proxy("rug_1", "rug", centre=(0, 0, 0.01), size=(2, 1, 0.02))\n'
+        "def rug_1(size):\n    return [\n"
+        "        part('pile', box((1.2, 1, 0.02), at=(-0.4, 0, 0.01)), material='fabric #B1ACA1'),\n"
+        "        part('streak', box((0.4, 1, 0.02), at=(0.4, 0, 0.01)), material='fabric #C4C0B6'),\n"
+        "        part('band', box((0.4, 1, 0.02), at=(0.8, 0, 0.01)), material='fabric #364961'),\n    ]\n"
+        'furnish("rug_1", rug_1)\nbuild()\n'
+    )
+    fields = {
+        "surface": "rug_1",
+        "kind": "rug",
+        "source": "picture",
+        "name": "rug_1_ab",
+        "sha256": "ab",
+        "size": (2, 1),
+    }
+    made = finished_text(text, Textures(surfaces=[Texture.model_validate(fields)]), evaluate(text))
+    finish = read_materials(made).finishes["rug_1"]
+    assert finish["pile"] == finish["streak"] and 'picture("rug_1_ab"' in finish["pile"] and "band" not in finish
+
+
 def test_nothing_is_taken_from_a_plan_and_it_says_so() -> None:
     found, kept = run("benchmark/pictures/flat_plan", TextureChoices(first=["picture", "procedural"]))
     assert not kept and found.surfaces
