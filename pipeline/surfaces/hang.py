@@ -16,6 +16,7 @@ from .choose import Carriers
 from .find import Surface
 from .frame import base_of, to_local, to_room
 from .rays import faces_of, hits
+from .seat import occupied
 
 _CLOTHES = re.compile(
     r"\b(clothes|clothing|garments?|coats?|dress(es)?|shirts?|jackets?|suits?|blouses?)\b", re.IGNORECASE
@@ -32,6 +33,8 @@ _ASIDE = 0.12
 """Metres that a row is moved to be over its rail, at most."""
 _HEM = 0.002
 """Metres that the longest hem gives way on what is below."""
+_WITHIN, _LEAST_CELLS = 0.9, 3
+"""Share of a row's outline that counts, and cells of a surface in it from which the row is over that."""
 _MOST = 400
 """Points of clothes over a rail that are looked at."""
 _LEAST = 0.35
@@ -63,7 +66,7 @@ def under_rail(proxy: ProxyLine, carrier: ProxyLine, carriers: Carriers) -> Prox
     if not rails:
         return None
     top, rail = min(rails, key=lambda r: abs(r[0] - base_of(proxy) - proxy.size[2]))
-    levels = [base_of(carrier) + s.level for s in carriers.surfaces(carrier.id) if _is_over(s, x, y)]
+    levels = [base_of(carrier) + s.level for s in carriers.surfaces(carrier.id) if _is_over(s, proxy, carrier)]
     below = [level for level in levels if level < top - _LEAST]
     if not below:
         return None
@@ -138,11 +141,12 @@ def _over_rail(proxy: ProxyLine, shapes: Sequence[Shape], carrier: ProxyLine, ra
     return gap if abs(gap) <= _HIGHEST else 0.0
 
 
-def _is_over(surface: Surface, x: float, y: float) -> bool:
-    """Whether there is some of a surface at a place, or right beside it."""
-    column, row = surface.grid.index(x, y)
-    near = surface.heights[max(0, column - 1) : column + 2, max(0, row - 1) : row + 2]
-    return bool(column >= -1 and row >= -1 and np.isfinite(near).any())
+def _is_over(surface: Surface, proxy: ProxyLine, carrier: ProxyLine) -> bool:
+    """Whether there is some of a surface below a row of clothes: a board, or a box in one corner of it."""
+    x, y = to_local(carrier, proxy.centre[:2])
+    width, depth = (_WITHIN * v for v in proxy.size[:2])
+    below = occupied(surface.grid, x, y, width, depth, proxy.yaw - carrier.yaw) & np.isfinite(surface.heights)
+    return bool(below.sum() >= _LEAST_CELLS)
 
 
 def _tops_below(proxy: ProxyLine, carrier: ProxyLine, carriers: Carriers) -> list[float]:
