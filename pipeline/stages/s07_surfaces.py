@@ -29,7 +29,7 @@ from ..program.prelude.proxies import proxy_shapes
 from ..program.prelude.shape import Shape
 from ..surfaces.choose import Carriers, Seated, carriers_under
 from ..surfaces.frame import base_of
-from ..surfaces.hang import is_hung, under_rail
+from ..surfaces.hang import is_hung, on_its_rail, under_rail
 from .base import Reads, Stage, View
 from .carrying import carried_on
 from .s07_retrieval import SETTING, retrieve
@@ -50,7 +50,7 @@ def run(view: View) -> StageRun:
     seating = _Seating(view, layout, shapes_of(text))
     yield Tell("Putting things onto surfaces", 2, 3)
     seating.run()
-    text = seating.sound(text, layout)
+    text = seating.on_rails(seating.sound(text, layout))
     geometry = view.need(Geometry)
     if seating.new:
         text, geometry = _modelled(view, seating, text, geometry)
@@ -146,6 +146,19 @@ class _Seating:
                 continue
             return made
         return relaid(text, self.layout)
+
+    def on_rails(self, text: str) -> str:
+        """The room's text after a second look at clothes that were hung: what they are in their new size is known only now."""
+        hung = [p.id for p in self.places if p.part == "rail" and p.id not in self.new]
+        if not hung:
+            return text
+        shapes, before = shapes_of(text), self.layout
+        for name in hung:
+            proxy = self.layout.proxy(name)
+            carrier = self.layout.proxy(proxy.parent) if proxy is not None and proxy.parent else None
+            if proxy is not None and carrier is not None:
+                self._place(on_its_rail(proxy, carrier, shapes))
+        return text if self.layout == before else self.sound(text, before)
 
     def open_names(self) -> set[str]:
         """Ids of the small objects that this run places."""

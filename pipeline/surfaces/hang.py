@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -85,6 +85,26 @@ def under_rail(proxy: ProxyLine, carrier: ProxyLine, carriers: Carriers) -> Prox
     hung = _on_rail(hung, own, carrier, rail)
     height = top - _over_rail(hung, own, carrier, rail) - base
     return hung.model_copy(update={"centre": (*hung.centre[:2], base + height / 2), "size": (*hung.size[:2], height)})
+
+
+def on_its_rail(proxy: ProxyLine, carrier: ProxyLine, shapes: Mapping[str, Sequence[Shape]]) -> ProxyLine:
+    """Clothes that hang already, with their hooks on their rail in the shapes that they have in their size now.
+
+    Their program was made in another size when they were hung, and hooks are not longer on longer clothes.
+    """
+    x, y = to_local(carrier, proxy.centre[:2])
+    rails = [
+        shape
+        for shape in _rails(shapes.get(carrier.id, ()))
+        if _is_under(shape.vertices.min(axis=0), shape.vertices.max(axis=0), x, y)
+    ]
+    top = base_of(proxy) + proxy.size[2] - base_of(carrier)
+    rail = min(rails, key=lambda r: abs(float(r.vertices[:, 2].max()) - top), default=None)
+    if rail is None:
+        return proxy
+    height = proxy.size[2] - _over_rail(proxy, shapes.get(proxy.id, ()), carrier, rail)
+    centre = (*proxy.centre[:2], base_of(proxy) + height / 2)
+    return proxy.model_copy(update={"centre": centre, "size": (*proxy.size[:2], height)})
 
 
 def _is_under(low: Floats, high: Floats, x: float, y: float) -> bool:

@@ -10,7 +10,7 @@ from code_as_room.pipeline.artifacts.layout import ProxyLine
 from code_as_room.pipeline.program.prelude.shape import Shape
 from code_as_room.pipeline.program.prelude.solids import box, cylinder
 from code_as_room.pipeline.surfaces.choose import Carriers
-from code_as_room.pipeline.surfaces.hang import under_rail
+from code_as_room.pipeline.surfaces.hang import on_its_rail, under_rail
 
 WARDROBE = ProxyLine(id="wardrobe_1", category="wardrobe", centre=(1.0, 2.0, 1.1), size=(1.6, 0.6, 2.2), yaw=90.0)
 TOP = replace(box((1.6, 0.6, 0.02), at=(0, 0, 2.19)), part="top")
@@ -59,6 +59,23 @@ def test_hooks_rest_on_the_rail_however_thick_they_are_and_wherever_they_stand_o
     assert hook == pytest.approx(1.912, abs=0.004)
     # The wardrobe is turned by 90 degrees: its depth runs against x.
     assert found.centre[0] - off == pytest.approx(1.0, abs=0.012) and found.centre[1] == pytest.approx(2.3)
+
+
+def test_hooks_that_do_not_grow_with_their_clothes_rest_on_the_rail_as_well() -> None:
+    def garment(height: float) -> list[Shape]:
+        hooks = [replace(box((0.003, 0.004, 0.01), at=(0.1, y, height - 0.015)), part="hook") for y in (-0.01, 0, 0.01)]
+        body = replace(box((0.4, 0.4, height - 0.1), at=(0, 0, (height - 0.1) / 2)), part="coat")
+        return [body, *hooks, replace(box((0.01, 0.01, 0.02), at=(0.15, 0, height - 0.01)), part="loop")]
+
+    found = hung(row(at=(1.0, 2.3)).model_copy(update={"yaw": 90.0}), [TOP, BOARD, RAIL], own=garment(0.9))
+    assert found is not None
+    shapes = {"wardrobe_1": [TOP, BOARD, RAIL], "a": garment(found.size[2])}
+    settled = on_its_rail(found, WARDROBE, shapes)
+    low, high = ends(settled)
+    assert low == pytest.approx(ends(found)[0]) and settled.size[2] != pytest.approx(found.size[2], abs=0.003)
+    # What it is made like in its new size, stretched by little: the lowest of its hooks and loops is on the rail.
+    lowest = min(float(s.vertices[:, 2].min()) for s in shapes["a"] if s.part != "coat")
+    assert low + lowest * settled.size[2] / found.size[2] == pytest.approx(1.912, abs=0.004)
 
 
 def test_clothes_hang_over_the_shoes_below_them() -> None:
