@@ -21,7 +21,6 @@ from ..program.prelude.palette import category_family
 from ..program.prelude.proxies import proxy_shapes
 from ..program.prelude.record import Record
 from ..program.prelude.shape import Shape
-from ..surfaces.hang import is_hung
 from .columns import Columns, Floats, columns_of, turned
 
 
@@ -87,11 +86,6 @@ class Body:
     def flat(self) -> bool:
         """Whether it lies on the floor as rugs do, and others may stand on it."""
         return self.line.placement == "floor" and self.high - self.low < FLAT
-
-    @functools.cached_property
-    def hung(self) -> bool:
-        """Whether it is clothes that hang in something: their hooks are thinner than columns."""
-        return self.line.placement == "surface" and is_hung(f"{self.line.category} {self.line.label}")
 
     @functools.cached_property
     def soft(self) -> bool:

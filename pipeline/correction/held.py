@@ -18,15 +18,11 @@ TOLERANCE = 0.005
 """Metres that a thing may float or be sunken."""
 SOFT_ABOVE, SOFT_IN = 0.01, 0.045
 """Metres that a soft thing may float over what carries it, and be pressed into it."""
-HEMS = 0.02
-"""Metres that hems of clothes may be above what is below them: they hang from a rail by hooks that are too thin to be seen here."""
 _ALONG = 0.1  # metres between places along a wall
 
 
 def is_held(body: Body, gap: float) -> bool:
     """Whether a body at this distance from what carries it rests on it; soft things may be pressed in."""
-    if body.hung:
-        return -TOLERANCE <= gap <= HEMS
     if body.soft:
         return -SOFT_IN <= gap <= SOFT_ABOVE
     return abs(gap) <= TOLERANCE

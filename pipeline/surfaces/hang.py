@@ -35,6 +35,8 @@ _HEM = 0.002
 """Metres that the longest hem gives way on what is below."""
 _WITHIN, _LEAST_CELLS = 0.9, 3
 """Share of a row's outline that counts, and cells of a surface in it from which the row is over that."""
+_SUNK, _DEEPEST = 0.004, 0.022
+"""Metres by which hooks may be in their rail, and by which they can be after their clothes grew; what is deeper is a hanger's neck."""
 _MOST = 400
 """Points of clothes over a rail that are looked at."""
 _LEAST = 0.35
@@ -102,7 +104,10 @@ def on_its_rail(proxy: ProxyLine, carrier: ProxyLine, shapes: Mapping[str, Seque
     rail = min(rails, key=lambda r: abs(float(r.vertices[:, 2].max()) - top), default=None)
     if rail is None:
         return proxy
-    height = proxy.size[2] - _over_rail(proxy, shapes.get(proxy.id, ()), carrier, rail)
+    over = _over_rail(proxy, shapes.get(proxy.id, ()), carrier, rail)
+    if not -_DEEPEST < over < -_SUNK:  # hooks above the rail are no harm where hems stand on what is below
+        return proxy
+    height = proxy.size[2] - over
     centre = (*proxy.centre[:2], base_of(proxy) + height / 2)
     return proxy.model_copy(update={"centre": centre, "size": (*proxy.size[:2], height)})
 

@@ -61,21 +61,24 @@ def test_hooks_rest_on_the_rail_however_thick_they_are_and_wherever_they_stand_o
     assert found.centre[0] - off == pytest.approx(1.0, abs=0.012) and found.centre[1] == pytest.approx(2.3)
 
 
-def test_hooks_that_do_not_grow_with_their_clothes_rest_on_the_rail_as_well() -> None:
-    def garment(height: float) -> list[Shape]:
-        hooks = [replace(box((0.003, 0.004, 0.01), at=(0.1, y, height - 0.015)), part="hook") for y in (-0.01, 0, 0.01)]
-        body = replace(box((0.4, 0.4, height - 0.1), at=(0, 0, (height - 0.1) / 2)), part="coat")
-        return [body, *hooks, replace(box((0.01, 0.01, 0.02), at=(0.15, 0, height - 0.01)), part="loop")]
+def test_hooks_that_are_longer_in_the_size_that_clothes_hang_in_do_not_sink_into_the_rail() -> None:
+    def garment(height: float, hook: float) -> list[Shape]:
+        tall = height - 0.1
+        wires = [
+            replace(box((0.003, 0.004, hook), at=(0.1, y, height - hook / 2)), part="hook") for y in (-0.01, 0, 0.01)
+        ]
+        return [replace(box((0.4, 0.4, tall), at=(0, 0, tall / 2)), part="coat"), *wires]
 
-    found = hung(row(at=(1.0, 2.3)).model_copy(update={"yaw": 90.0}), [TOP, BOARD, RAIL], own=garment(0.9))
+    found = hung(row(at=(1.0, 2.3)).model_copy(update={"yaw": 90.0}), [TOP, BOARD, RAIL], own=garment(0.9, 0.02))
     assert found is not None
-    shapes = {"wardrobe_1": [TOP, BOARD, RAIL], "a": garment(found.size[2])}
-    settled = on_its_rail(found, WARDROBE, shapes)
-    low, high = ends(settled)
-    assert low == pytest.approx(ends(found)[0]) and settled.size[2] != pytest.approx(found.size[2], abs=0.003)
-    # What it is made like in its new size, stretched by little: the lowest of its hooks and loops is on the rail.
-    lowest = min(float(s.vertices[:, 2].min()) for s in shapes["a"] if s.part != "coat")
-    assert low + lowest * settled.size[2] / found.size[2] == pytest.approx(1.912, abs=0.004)
+    longer = garment(found.size[2], 0.045)
+    settled = on_its_rail(found, WARDROBE, {"wardrobe_1": [TOP, BOARD, RAIL], "a": longer})
+    low, _ = ends(settled)
+    assert low == pytest.approx(ends(found)[0])
+    lowest = (found.size[2] - 0.045) * settled.size[2] / found.size[2]
+    assert low + found.size[2] - 0.045 < 1.905 and low + lowest == pytest.approx(1.912, abs=0.004)
+    # What hangs well already stays, to the bit.
+    assert on_its_rail(settled, WARDROBE, {"wardrobe_1": [TOP, BOARD, RAIL], "a": garment(1.45, 0.01)}) is settled
 
 
 def test_clothes_hang_over_the_shoes_below_them() -> None:
